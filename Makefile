@@ -1,0 +1,90 @@
+# The front door: `make` installs what is missing, configures and builds; `make help` lists the rest.
+# The work itself is done by CMake, CTest and the scripts of tools/.
+#
+# Variables: BUILD (build folder), JOBS (parallel jobs), BUILD_TYPE (of a new build folder),
+# DEMO (where `make demo` writes), PACKAGES=no (install nothing), CMAKE_FLAGS (more -D...).
+
+BUILD ?= build
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+BUILD_TYPE ?= Release
+DEMO ?= manoscope-demo
+PACKAGES ?= yes
+CMAKE_FLAGS ?=
+
+# CMake takes these as the defaults of a new build folder and leaves one that exists as it is.
+export CMAKE_GENERATOR ?= Ninja
+export CMAKE_BUILD_TYPE ?= $(BUILD_TYPE)
+export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
+export JOBS
+
+install = $(if $(filter yes,$(PACKAGES)),tools/install_packages.sh,@: not installing)
+configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
+# The program alone needs no test framework: a new folder starts without the tests.
+without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
+
+.NOTPARALLEL:
+.PHONY: all demo test bench docs check format format-check layers scripts tidy asan clean \
+        install-packages help
+
+all: ## build the program, build/manoscope (the default)
+	@$(install) build libraries figures
+	@$(configure) $(without_tests)
+	@cmake --build $(BUILD) --target manoscope -j $(JOBS)
+
+demo: all ## a virtual experiment with known truth: made, measured, judged
+	$(BUILD)/manoscope demo -o $(DEMO)
+
+test: ## build everything and run every test
+	@$(install) build libraries figures tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) -j $(JOBS)
+	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bench: ## time the program against the same work in numpy
+	@$(install) build libraries figures bench
+	@$(configure) $(without_tests) -DMANOSCOPE_BENCH=ON
+	@cmake --build $(BUILD) --target bench -j $(JOBS)
+
+docs: all ## check links and commands of the documentation
+	@tools/check_docs.py --program $(BUILD)/manoscope
+
+check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
+
+format: ## format every C++ file
+	@$(install) checks
+	@tools/format.sh
+
+format-check:
+	@$(install) checks
+	@tools/format.sh --check
+
+layers: ## check that includes point down layers.txt
+	@$(install) build
+	@tools/check_layers.py
+
+scripts: ## check the scripts of tools/
+	@$(install) checks
+	@shellcheck tools/*.sh .ci/run
+	@for test in tools/*_test.py; do python3 "$$test" -q || exit 1; done
+
+tidy: ## run clang-tidy on the sources
+	@$(install) build libraries checks
+	@$(configure) $(without_tests)
+	@cmake --build $(BUILD) --target tidy
+
+asan: ## every test once more, under the address and undefined-behaviour sanitizers
+	@$(install) build libraries figures tests
+	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
+	@cmake --build --preset asan -j $(JOBS)
+	@ctest --preset asan -j $(JOBS)
+
+clean: ## remove the build folders and the demo's output
+	@for folder in $(BUILD) build-asan build-dev build-release; do \
+	  if [ -f "$$folder/CMakeCache.txt" ]; then rm -rf "$$folder"; fi; done
+	@rm -rf manoscope-demo
+
+install-packages: ## install every package of packages/debian.txt that is missing
+	@tools/install_packages.sh
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.* ## \(.*\)/\1\t\2/p' Makefile | expand -t 20

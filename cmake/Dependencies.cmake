@@ -1,0 +1,26 @@
+# Every outside library, found once. Headers of all of them count as system headers.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(TBB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
+
+find_path(UDUNITS2_INCLUDE_DIR udunits2.h PATH_SUFFIXES udunits2 REQUIRED)
+find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
+add_library(manoscope_udunits2 INTERFACE)
+target_include_directories(manoscope_udunits2 SYSTEM INTERFACE ${UDUNITS2_INCLUDE_DIR})
+target_link_libraries(manoscope_udunits2 INTERFACE ${UDUNITS2_LIBRARY})
+
+find_program(MANOSCOPE_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(NOT MANOSCOPE_PYTHON)
+  find_program(MANOSCOPE_PYTHON NAMES python3 REQUIRED)
+endif()
+
+if(MANOSCOPE_TESTS)
+  find_package(GTest REQUIRED)
+endif()

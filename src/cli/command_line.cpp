@@ -1,0 +1,217 @@
+#include "command_line.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <mutex>
+#include <new>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/core/provenance.hpp"
+#include "manoscope/core/suggest.hpp"
+
+namespace manoscope::cli {
+namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+extern "C" void on_stop(int signal) {
+  stop_signal = signal;
+  std::signal(signal, SIG_DFL);  // a second Ctrl-C ends the program at once
+}
+
+/// A bar on the terminal's last line, removed when done.
+class ProgressLine {
+ public:
+  void show(std::string_view stage, double fraction) {
+    constexpr int kWidth = 30;
+    const std::scoped_lock guard(mutex_);
+    const int filled = static_cast<int>(fraction * kWidth);
+    const int percent = static_cast<int>(fraction * 100.0);
+    if (percent == last_percent_ && stage == last_stage_) return;
+    last_percent_ = percent;
+    last_stage_ = stage;
+    fmt::print(stderr, "\r{:<24} [{:#<{}}{:.<{}}] {:3d} %", stage, "", filled, "", kWidth - filled,
+               percent);
+    std::fflush(stderr);
+    shown_ = true;
+  }
+  void clear() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+    shown_ = false;
+  }
+
+ private:
+  std::mutex mutex_;
+  int last_percent_ = -1;
+  std::string last_stage_;
+  bool shown_ = false;
+};
+
+void say(const std::string& kind, const std::string& text) {
+  fmt::print(stderr, "manoscope: {}: {}\n", kind, text);
+}
+
+}  // namespace
+
+struct Command::Impl {
+  CLI::App* app = nullptr;
+  Context* context = nullptr;
+};
+
+struct Program::Impl {
+  CLI::App app{"Pressure inside micro-channels, read off the deflection of their wall"};
+  Context context;
+  ProgressLine progress;
+};
+
+Command::Command(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Command::Command(Command&&) noexcept = default;
+Command::~Command() = default;
+
+void Command::positional(const std::string& name, std::filesystem::path& value,
+                         const std::string& help) {
+  impl_->app->add_option(name, value, help)->required()->type_name("");
+}
+
+void Command::positional(const std::string& name, std::vector<std::filesystem::path>& value,
+                         const std::string& help) {
+  impl_->app->add_option(name, value, help)->required()->type_name("");
+}
+
+void Command::option(const std::string& names, std::filesystem::path& value,
+                     const std::string& help, bool required) {
+  impl_->app->add_option(names, value, help)->required(required)->type_name("PATH");
+}
+
+void Command::option(const std::string& names, std::string& value, const std::string& help,
+                     bool required) {
+  impl_->app->add_option(names, value, help)->required(required)->type_name("TEXT");
+}
+
+void Command::flag(const std::string& names, bool& value, const std::string& help) {
+  impl_->app->add_flag(names, value, help);
+}
+
+void Command::described(const OptionInfo& info, const std::string& group,
+                        std::function<void(const std::string&)> set) {
+  impl_->app->add_option_function<std::string>("--" + info.name, std::move(set), info.help)
+      ->type_name(info.kind)
+      ->default_str(info.value)
+      ->group(group);
+}
+
+void Command::action(std::function<void(const Context&)> run) {
+  impl_->app->callback([run = std::move(run), context = impl_->context] { run(*context); });
+}
+
+Program::Program() : impl_(std::make_unique<Impl>()) {
+  CLI::App& app = impl_->app;
+  app.name("manoscope");
+  app.require_subcommand(1);
+  app.set_version_flag("--version",
+                       fmt::format("manoscope {} ({})", program_version(), source_revision()));
+  app.get_formatter()->column_width(34);
+  app.footer(
+      "Results go to standard output or files, progress and warnings to standard error.\n"
+      "Exit codes: 0 done, 1 a fault of the program, 2 a fault of the input, 130 "
+      "interrupted.");
+}
+
+Program::~Program() = default;
+
+Command Program::command(const std::string& name, const std::string& help) {
+  auto impl = std::make_unique<Command::Impl>();
+  impl->app = impl_->app.add_subcommand(name, help);
+  impl->context = &impl_->context;
+  Context& context = impl_->context;
+  constexpr const char* kGroup = "Common options";
+  CLI::App& app = *impl->app;
+  app.add_option("--threads", context.threads, "threads to use; 0 = all the machine has")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024))
+      ->group(kGroup);
+  app.add_option("--seed", context.seed, "seed of everything that is drawn at random")
+      ->type_name("N")
+      ->group(kGroup);
+  app.add_flag("--quiet", context.quiet, "no progress, no remarks")->group(kGroup);
+  app.add_flag("--json", context.json, "machine-readable output, SI units")->group(kGroup);
+  return Command(std::move(impl));
+}
+
+int Program::run(int argc, char** argv) {
+  std::signal(SIGINT, on_stop);
+  std::signal(SIGTERM, on_stop);
+  std::signal(SIGPIPE, SIG_IGN);
+  Impl& impl = *impl_;
+  impl.context.monitor.stop_requested = [] { return stop_signal != 0; };
+  if (isatty(STDERR_FILENO) == 1) {
+    impl.context.monitor.progress = [&impl](std::string_view stage, double fraction) {
+      if (!impl.context.quiet) impl.progress.show(stage, fraction);
+    };
+  }
+  constexpr int kOurFault = 1, kUsersFault = 2, kInterrupted = 130;
+  try {
+    impl.app.parse(argc, argv);
+    impl.progress.clear();
+    return 0;
+  } catch (const CLI::CallForHelp& request) {
+    return impl.app.exit(request);
+  } catch (const CLI::CallForAllHelp& request) {
+    return impl.app.exit(request);
+  } catch (const CLI::CallForVersion& request) {
+    return impl.app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    std::vector<std::string> names;
+    for (const CLI::App* known : impl.app.get_subcommands({})) names.push_back(known->get_name());
+    const bool has_command = argc > 1 && argv[1][0] != '-';
+    const bool known = has_command && std::find(names.begin(), names.end(), argv[1]) != names.end();
+    if (has_command && !known) {
+      say("error", fmt::format("there is no command \"{}\"{}. `manoscope --help` lists them.",
+                               argv[1], did_you_mean(argv[1], names)));
+    } else {
+      say("error", fmt::format("{}. See `manoscope{} --help`.", error.what(),
+                               known ? std::string(" ") + argv[1] : ""));
+    }
+    return kUsersFault;
+  } catch (const InputErrors& errors) {
+    impl.progress.clear();
+    for (const InputError& fault : errors.faults()) say("error", fault.what());
+    return kUsersFault;
+  } catch (const InputError& error) {
+    impl.progress.clear();
+    say("error", error.what());
+    return kUsersFault;
+  } catch (const Interrupted&) {
+    impl.progress.clear();
+    say("stopped", "interrupted; nothing was half-written");
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    impl.progress.clear();
+    say("error", "out of memory. Free some, or use fewer --threads.");
+    return kOurFault;
+  } catch (const std::exception& error) {
+    impl.progress.clear();
+    say("fault of the program",
+        fmt::format("{}. Please report it with the input that led here.", error.what()));
+    return kOurFault;
+  }
+}
+
+void print(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) {
+    throw InputError("standard output", "cannot be written",
+                     "Check the disk or the pipe it goes to");
+  }
+}
+
+void remark(const Context& context, const std::string& text) {
+  if (!context.quiet) fmt::print(stderr, "{}\n", text);
+}
+
+}  // namespace manoscope::cli

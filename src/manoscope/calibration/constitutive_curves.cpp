@@ -1,0 +1,59 @@
+#include "manoscope/calibration/constitutive_curves.hpp"
+
+namespace manoscope::calibration {
+namespace {
+
+numerics::ShapeSpline make_spline(const PressureScale& scale,
+                                  const std::vector<ConstitutiveCurve::Knot>& knots) {
+  std::vector<double> u, y;
+  for (const auto& knot : knots) {
+    u.push_back(scale.coordinate(knot.pressure));
+    y.push_back(knot.zeta);
+  }
+  return {std::move(u), std::move(y)};
+}
+
+}  // namespace
+
+ConstitutiveCurve::ConstitutiveCurve(const PressureScale& scale, std::vector<Knot> knots)
+    : scale_(scale), knots_(std::move(knots)), spline_(make_spline(scale_, knots_)) {}
+
+double ConstitutiveCurve::zeta(double pressure) const {
+  return spline_.value(scale_.coordinate(pressure));
+}
+
+double ConstitutiveCurve::slope(double pressure) const {
+  return spline_.derivative(scale_.coordinate(pressure)) * scale_.derivative(pressure);
+}
+
+double ConstitutiveCurve::interpolation_doubt(double pressure) const {
+  return spline_.doubt(scale_.coordinate(pressure));
+}
+
+Index ConstitutiveCurve::interval_level(double pressure) const {
+  std::size_t j = 0;
+  while (j + 2 < knots_.size() && knots_[j + 1].pressure <= pressure) ++j;
+  return knots_[j].levels.front();
+}
+
+std::vector<double> ConstitutiveCurve::pressures(double zeta) const {
+  std::vector<double> solutions = spline_.solve(zeta);
+  for (double& solution : solutions) solution = scale_.pressure(solution);
+  return solutions;
+}
+
+std::vector<ConstitutiveCurve::LevelWeight> ConstitutiveCurve::level_weights(
+    double pressure) const {
+  std::vector<LevelWeight> weights;
+  for (const auto& [j, weight] : spline_.weights(scale_.coordinate(pressure))) {
+    const Knot& knot = knots_[static_cast<std::size_t>(j)];
+    const double slope_there = spline_.knot_slope(j) * scale_.derivative(knot.pressure);
+    const double share = weight / static_cast<double>(knot.levels.size());
+    for (const Index level : knot.levels) {
+      weights.push_back({level, share, -share * slope_there});
+    }
+  }
+  return weights;
+}
+
+}  // namespace manoscope::calibration

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "manoscope/core/profile.hpp"
+#include "manoscope/core/units.hpp"
+
+namespace manoscope::calibration {
+
+/// The wall at one known uniform pressure.
+///
+/// The stations of the profile may be positions along a channel or any other labelled set (pixels
+/// of a bulge): calibration and reading treat each on its own.
+struct Level {
+  std::string name;        ///< of the reading, unique: its label error is one error variable
+  Pressure pressure{};     ///< as read on the gauge
+  Pressure uncertainty{};  ///< standard, of this one reading alone; 0 = vented, exactly zero
+  Profile profile;         ///< zeta(x; pressure)
+};
+
+/// Levels in ascending order of pressure; those read at the same pressure become one.
+///
+/// Repeats are averaged with equal weight, station by station over the profiles that count; the
+/// label of n repeats has 1/sqrt(n) of their uncertainty.
+/// @throws InputError for fewer than 3 distinct pressures, or stations that differ between levels.
+std::vector<Level> sort_levels(std::vector<Level> levels);
+
+}  // namespace manoscope::calibration

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "manoscope/core/arrays.hpp"
+
+namespace manoscope {
+
+/// Why a pixel of a map does not count. Bits; 0 = good.
+struct PixelFlag {
+  static constexpr FlagBits no_data = 1;  ///< the instrument gave no height here
+  static constexpr FlagBits spike = 2;    ///< stands alone against its neighbours
+};
+
+/// Why a station of a profile does not count. Bits; 0 = good.
+struct StationFlag {
+  static constexpr FlagBits no_data = 1;  ///< too few good pixels across the width
+};
+
+/// Why a pressure reading is missing or needs care. Bits; 0 = good.
+///
+/// The bits and their order are part of the result file (`pressure_flags`).
+struct ReadingFlag {
+  static constexpr FlagBits no_data = 1;             ///< no deflection at this station
+  static constexpr FlagBits out_of_calibration = 2;  ///< deflection beyond every level
+  static constexpr FlagBits ambiguous = 4;           ///< more than one pressure fits
+  static constexpr FlagBits insensitive = 8;         ///< the wall hardly answers here
+  static constexpr FlagBits outside_test_section = 16;
+
+  /// Flags that leave no pressure: the reading holds NaN there.
+  static constexpr FlagBits no_answer = no_data | out_of_calibration | ambiguous | insensitive;
+};
+
+struct FlagName {
+  FlagBits bit;
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// Bit, name and meaning of every reading flag, in the order of the bits.
+inline constexpr std::array<FlagName, 5> kReadingFlags{{
+    {ReadingFlag::no_data, "no_data", "too few good pixels across the width"},
+    {ReadingFlag::out_of_calibration, "out_of_calibration",
+     "deflection outside the range of the calibration"},
+    {ReadingFlag::ambiguous, "ambiguous", "more than one pressure fits the deflection"},
+    {ReadingFlag::insensitive, "insensitive", "the wall hardly answers to pressure here"},
+    {ReadingFlag::outside_test_section, "outside_test_section",
+     "the clamped ends are felt, or the wall is too stiff: outside the test section"},
+}};
+
+}  // namespace manoscope

@@ -1,0 +1,159 @@
+#include "manoscope/experiment/draft.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/experiment/draft_text.hpp"
+#include "manoscope/experiment/experiment.hpp"
+#include "manoscope/experiment/test_folder.hpp"
+
+namespace manoscope::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A Gwyddion Simple Field of 4 x 2 pixels, 2.0 mm x 0.8 mm: header, NUL padding, 32-bit floats.
+std::string tiny_gsf() {
+  std::string text =
+      "Gwyddion Simple Field 1.0\nXRes = 4\nYRes = 2\nXReal = 0.002\nYReal = 0.0008\n"
+      "XYUnits = m\nZUnits = m\n";
+  text.append(4 - text.size() % 4, '\0');
+  for (int i = 0; i < 8; ++i) {
+    const float height = 1e-6f * static_cast<float>(i);
+    char bytes[sizeof height];
+    std::memcpy(bytes, &height, sizeof height);
+    text.append(bytes, sizeof height);
+  }
+  return text;
+}
+
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string without_comments(const std::string& text) {
+  std::string kept;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1) + 1;
+    if (text[at] != '#') kept += text.substr(at, end - at);
+    at = end;
+  }
+  return kept;
+}
+
+void write_maps(const TestFolder& folder, std::initializer_list<const char*> names) {
+  for (const char* name : names) folder.write(name, tiny_gsf());
+}
+
+TEST(Draft, SortsMapsIntoListsByTheirNames) {
+  const TestFolder folder;
+  write_maps(folder, {"S1_2.3kPa.gsf", "S1_0Pa.gsf", "S1_0.5mbar_02.gsf", "Q70mlmin_02.gsf",
+                      "Q70mlmin_01.gsf", "Q5mlmin_01.gsf", "map.gsf", "1kPa_2kPa.gsf"});
+  folder.write("notes.pdf", "%PDF-1.4 nothing to see");
+  const Draft draft = draft_experiment(folder.path());
+  EXPECT_EQ(draft.written.size(), 3u);
+  EXPECT_EQ(without_comments(text_of(folder.path() / "hydrostatic.csv")),
+            "map,pressure [Pa]\nS1_0Pa.gsf,0\nS1_0.5mbar_02.gsf,50\nS1_2.3kPa.gsf,2300\n");
+  EXPECT_EQ(without_comments(text_of(folder.path() / "flow.csv")),
+            "map,flow_rate [mL/min],run\nQ5mlmin_01.gsf,5,Q5\nQ70mlmin_01.gsf,70,Q70\n"
+            "Q70mlmin_02.gsf,70,Q70\n");
+  EXPECT_EQ(draft.unassigned, (std::vector<std::string>{"1kPa_2kPa.gsf", "map.gsf"}));
+  EXPECT_EQ(draft.no_maps, (std::vector<std::string>{"notes.pdf"}));
+}
+
+TEST(Draft, MarksEveryGuessForTheUser) {
+  const TestFolder folder;
+  write_maps(folder, {"a_0Pa.gsf", "a_1kPa.gsf", "Q5mlmin.gsf"});
+  draft_experiment(folder.path());
+  const std::string rest = text_of(folder.path() / "hydrostatic.csv");
+  EXPECT_NE(rest.find("# CONFIRM 1000 Pa, from \"1kPa\" in a_1kPa.gsf\n"), std::string::npos)
+      << rest;
+  const std::string flow = text_of(folder.path() / "flow.csv");
+  EXPECT_NE(flow.find("# CONFIRM 5 mL/min, from \"5mlmin\" in Q5mlmin.gsf\n"), std::string::npos)
+      << flow;
+  const std::string toml = text_of(folder.path() / "experiment.toml");
+  EXPECT_NE(toml.find("# The maps are 2 mm along columns by 0.8 mm along rows, 4 x 2 pixels"),
+            std::string::npos)
+      << toml;
+  EXPECT_NE(toml.find("# CONFIRM: water"), std::string::npos);
+}
+
+TEST(Draft, LeavesToTheUserWhatCheckThenAsksFor) {
+  const TestFolder folder;
+  write_maps(folder, {"h00.gsf", "x_1kPa.gsf", "x_2kPa.gsf", "x_3kPa.gsf", "f00.gsf"});
+  draft_experiment(folder.path());
+  try {
+    read_experiment(folder.path());
+    FAIL();
+  } catch (const InputErrors& errors) {
+    std::string keys;
+    for (const InputError& fault : errors.faults()) {
+      keys += fault.where().substr(fault.where().rfind(' ') + 1) + ' ';
+      EXPECT_NE(fault.found().find("placeholder"), std::string::npos) << fault.what();
+    }
+    EXPECT_EQ(keys, "channel.length channel.width channel.height pressure flow_rate ");
+  }
+}
+
+TEST(Draft, IsAnExperimentOnceItsGapsAreFilled) {
+  const TestFolder folder;
+  write_maps(folder, {"S1, \"old\" 0Pa.gsf", "#1kPa.gsf", "µ_2kPa.gsf", "Q5mlmin.gsf"});
+  draft_experiment(folder.path());
+  std::string toml = text_of(folder.path() / "experiment.toml");
+  toml = replaced(replaced(toml, "? mm", "15 mm"), "? mm", "1.7 mm");
+  folder.write("experiment.toml", replaced(toml, "? um", "175 um"));
+  const Experiment experiment = read_experiment(folder.path());
+  ASSERT_EQ(experiment.hydrostatic.size(), 3u);
+  EXPECT_EQ(experiment.hydrostatic[0].name, "S1, \"old\" 0Pa.gsf");
+  EXPECT_EQ(experiment.hydrostatic[1].name, "#1kPa.gsf");
+  EXPECT_EQ(experiment.hydrostatic[2].pressure.si(), 2000.0);
+  EXPECT_EQ(experiment.name, folder.path().filename());
+}
+
+TEST(Draft, DoesWithoutFlow) {
+  const TestFolder folder;
+  write_maps(folder, {"0Pa.gsf", "1kPa.gsf", "2kPa.gsf"});
+  const Draft draft = draft_experiment(folder.path());
+  EXPECT_EQ(draft.written.size(), 2u);
+  EXPECT_FALSE(fs::exists(folder.path() / "flow.csv"));
+  EXPECT_EQ(text_of(folder.path() / "experiment.toml").find("\n[flow]"), std::string::npos);
+}
+
+TEST(Draft, OverwritesNothing) {
+  for (const char* name : {"experiment.toml", "hydrostatic.csv", "flow.csv"}) {
+    const TestFolder folder;
+    write_maps(folder, {"0Pa.gsf"});
+    folder.write(name, "mine");
+    EXPECT_THROW(draft_experiment(folder.path()), InputError);
+    EXPECT_EQ(text_of(folder.path() / name), "mine");
+    // The map and the user's own file, nothing else.
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
+  }
+}
+
+TEST(Draft, RefusesAFolderWithoutMaps) {
+  const TestFolder folder;
+  EXPECT_THROW(draft_experiment(folder.path()), InputError);
+  EXPECT_THROW(draft_experiment(folder.path() / "none"), InputError);
+  folder.write("0Pa.pdf", "%PDF-1.4");
+  EXPECT_THROW(draft_experiment(folder.path()), InputError);
+  EXPECT_FALSE(fs::exists(folder.path() / "experiment.toml"));
+}
+
+TEST(Draft, DropsNamesThatNoListCanHold) {
+  EXPECT_TRUE(can_be_listed("a,b;\"c\" #1.gsf"));
+  EXPECT_FALSE(can_be_listed("a\xFF.gsf"));
+  EXPECT_FALSE(can_be_listed("two\nlines.gsf"));
+  EXPECT_FALSE(can_be_listed(" led by a blank.gsf"));
+  EXPECT_TRUE(can_be_a_name("S1 \"new\" \\ µ"));
+  EXPECT_FALSE(can_be_a_name("a\xFF"));
+}
+
+}  // namespace
+}  // namespace manoscope::experiment

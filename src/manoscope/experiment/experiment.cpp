@@ -1,0 +1,119 @@
+#include "manoscope/experiment/experiment.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+#include <utility>
+
+#include "manoscope/experiment/list_checks.hpp"
+#include "manoscope/experiment/lists.hpp"
+#include "manoscope/experiment/map_files.hpp"
+#include "manoscope/experiment/sections.hpp"
+#include "manoscope/experiment/table_reader.hpp"
+#include "manoscope/experiment/toml_document.hpp"
+
+namespace manoscope::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kSchema = 1;
+
+/// The experiment.toml that the user means.
+fs::path find_file(const fs::path& folder_or_file, Faults& faults) {
+  std::error_code error;
+  if (!fs::is_directory(folder_or_file, error)) {
+    if (!fs::exists(folder_or_file, error)) {
+      faults.add({folder_or_file, 0, ""}, "there is no such file or folder",
+                 "Name an experiment folder or its experiment.toml");
+      faults.throw_if_any(folder_or_file);
+    }
+    return folder_or_file;
+  }
+  fs::path file = folder_or_file / "experiment.toml";
+  if (!fs::exists(file, error)) {
+    faults.add(
+        {folder_or_file, 0, ""}, "the folder holds no experiment.toml",
+        fmt::format("Draft one from the maps in it: manoscope init {}", folder_or_file.string()));
+    faults.throw_if_any(folder_or_file);
+  }
+  return file;
+}
+
+TomlValue read_document(Experiment& experiment, Faults& faults) {
+  const fs::path& file = experiment.file;
+  auto text = read_file(file, {file, 0, ""}, faults);
+  faults.throw_if_any(file);
+  experiment.text = std::move(*text);
+  try {
+    return parse_toml(experiment.text, file);
+  } catch (const InputError& error) {
+    throw InputErrors({error});
+  }
+}
+
+void check_schema(TableReader& root, Faults& faults) {
+  const auto schema = root.integer("manoscope", Need::required);
+  if (!schema || *schema == kSchema) return;
+  faults.add(root.place("manoscope"), fmt::format("schema {} of the experiment file", *schema),
+             *schema > kSchema
+                 ? fmt::format("This program knows schema {}: use a newer manoscope", kSchema)
+                 : fmt::format("Write manoscope = {}", kSchema));
+}
+
+/// Of a folder given as ".", too.
+std::string folder_name(const fs::path& file) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(file, error), error);
+  return error ? std::string("experiment") : whole.parent_path().filename().string();
+}
+
+void read_sections(TableReader& root, Experiment& experiment, Faults& faults) {
+  if (auto table = root.table("channel", Need::required)) {
+    experiment.channel = read_channel(*table, faults);
+  }
+  if (auto table = root.table("wall")) experiment.wall = read_wall(*table);
+  if (auto table = root.table("fluid", Need::required)) experiment.fluid = read_fluid(*table);
+  if (auto table = root.table("rigid")) experiment.rigid = read_rigid(*table);
+}
+
+void read_maps(TableReader& root, Experiment& experiment, Faults& faults) {
+  MapFiles files(experiment.file.parent_path());
+  InstrumentSection& instrument = experiment.instrument;
+  auto instrument_table = root.table("instrument");
+  if (instrument_table) instrument = read_instrument(*instrument_table);
+  MapList<HydrostaticMap> hydrostatic;
+  MapList<FlowMap> flow;
+  if (auto table = root.table("hydrostatic", Need::required)) {
+    hydrostatic = read_hydrostatic(*table, instrument, files, faults);
+  }
+  if (auto table = root.table("flow")) flow = read_flow(*table, files, faults);
+  check_lists(hydrostatic, flow, faults);
+  if (instrument.reference) {
+    const Place place = instrument_table->place("reference");
+    instrument.reference = files.find(instrument.reference->string(), place, faults);
+    check_reference(*instrument.reference, place, hydrostatic, flow, faults);
+  }
+  experiment.hydrostatic = std::move(hydrostatic.maps);
+  experiment.flow = std::move(flow.maps);
+}
+
+}  // namespace
+
+Experiment read_experiment(const fs::path& folder_or_file) {
+  Faults faults;
+  Experiment experiment;
+  experiment.file = find_file(folder_or_file, faults);
+  const TomlValue document = read_document(experiment, faults);
+  TableReader root(document, "", experiment.file, faults);
+  check_schema(root, faults);
+  experiment.name = root.text("name").value_or("");
+  if (experiment.name.empty()) experiment.name = folder_name(experiment.file);
+  read_sections(root, experiment, faults);
+  read_maps(root, experiment, faults);
+  root.finish();
+  faults.throw_if_any(experiment.file);
+  return experiment;
+}
+
+}  // namespace manoscope::experiment

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manoscope/core/frame.hpp"
+#include "manoscope/core/units.hpp"
+
+namespace manoscope::experiment {
+
+struct ChannelSection {
+  Length length{};                           ///< l, along the flow
+  Length width{};                            ///< w, across
+  Length height{};                           ///< 2 h0, gap under the undeflected wall
+  std::optional<Length> height_uncertainty;  ///< standard
+  /// Inlet-side corner (x = 0, z = -w/2) in the map, [along columns, along rows], from the outer
+  /// corner of the first pixel. Absent = to be found from the maps.
+  std::optional<std::array<Length, 2>> origin;
+  std::optional<FlowDirection> flow;
+  std::optional<Angle> rotation;
+  std::optional<Outward> outward;
+};
+
+struct WallSection {
+  std::string material;
+  std::optional<Length> thickness;
+  std::optional<Pressure> youngs_modulus;
+  std::optional<double> poisson_ratio;
+  std::optional<Pressure> prestress;
+};
+
+struct FluidSection {
+  std::string name;
+  Viscosity viscosity{};
+  Density density{};
+};
+
+struct InstrumentSection {
+  std::optional<Length> height_noise;                 ///< standard deviation of one pixel
+  std::optional<Pressure> pressure_noise;             ///< of one hydrostatic reading
+  std::optional<double> pressure_gain_uncertainty;    ///< relative, common to all levels
+  std::optional<Pressure> pressure_zero_uncertainty;  ///< common to all levels
+  std::optional<std::filesystem::path> reference;     ///< the instrument's own flat reference map
+};
+
+enum class SweepDirection { unknown, up, down };
+
+/// One map at a known uniform pressure, outlet closed.
+struct HydrostaticMap {
+  std::filesystem::path map;  ///< absolute, or relative to the working directory
+  std::string name;           ///< as written in the list
+  Pressure pressure{};
+  Pressure pressure_uncertainty{};  ///< standard, of this one reading; 0 = vented, exactly 0 Pa
+  std::optional<int> sequence;
+  SweepDirection direction = SweepDirection::unknown;
+  int line = 0;  ///< in the file that lists it
+};
+
+/// One map under flow.
+struct FlowMap {
+  std::filesystem::path map;
+  std::string name;
+  FlowRate flow_rate{};
+  std::optional<Pressure>
+      pressure_drop;  ///< transducer, inlet minus outlet, parasitic part included
+  std::optional<Pressure> outlet_pressure;
+  std::optional<Time> time;
+  std::string run;  ///< "" in the file becomes the map's name without extension
+  int line = 0;
+};
+
+/// A rigid passage between the channel and a gauge.
+struct Passage {
+  Length length{}, width{}, height{};
+};
+
+struct RigidSection {
+  std::optional<Passage> inlet, outlet;
+};
+
+/// One experiment file, checked whole: units understood, maps there, lists read.
+struct Experiment {
+  std::filesystem::path file;  ///< the experiment.toml
+  std::string text;            ///< its content, verbatim
+  std::string name;
+  ChannelSection channel;
+  std::optional<WallSection> wall;
+  FluidSection fluid;
+  InstrumentSection instrument;
+  std::vector<HydrostaticMap> hydrostatic;  ///< in the order of the list
+  std::vector<FlowMap> flow;                ///< in the order of the list; may be empty
+  RigidSection rigid;
+};
+
+/// Reads and checks an experiment: a folder that holds experiment.toml, or the file itself.
+///
+/// @throws InputErrors with every fault of the file and its lists, each naming file, line and key,
+///         what was found and what to write instead.
+Experiment read_experiment(const std::filesystem::path& folder_or_file);
+
+}  // namespace manoscope::experiment

@@ -1,0 +1,177 @@
+#include "manoscope/experiment/experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/experiment/test_folder.hpp"
+
+namespace manoscope::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Round-off of one unit conversion.
+void expect_si(double value, double expected) {
+  EXPECT_NEAR(value, expected, 1e-14 * std::abs(expected));
+}
+
+TEST(ReadExperiment, UnderstandsEveryKeyOfTheManual) {
+  const TestFolder folder;
+  write_full_example(folder);
+  const Experiment e = read_experiment(folder.path());
+  EXPECT_EQ(e.file, folder.path() / "experiment.toml");
+  EXPECT_EQ(e.text, kFullToml);
+  EXPECT_EQ(e.name, "S1");
+  expect_si(e.channel.length.si(), 15.5e-3);
+  expect_si(e.channel.width.si(), 1.7e-3);
+  expect_si(e.channel.height.si(), 175e-6);
+  expect_si(e.channel.height_uncertainty->si(), 0.5e-6);
+  expect_si((*e.channel.origin)[1].si(), 0.4e-3);
+  EXPECT_EQ(e.channel.flow, FlowDirection::plus_columns);
+  expect_si(e.channel.rotation->si(), std::numbers::pi / 360);
+  EXPECT_EQ(e.channel.outward, Outward::minus_height);
+  ASSERT_TRUE(e.wall);
+  EXPECT_EQ(e.wall->material, "SiN");
+  expect_si(e.wall->thickness->si(), 0.2e-6);
+  expect_si(e.wall->youngs_modulus->si(), 250e9);
+  EXPECT_EQ(e.wall->poisson_ratio, 0.23);
+  expect_si(e.wall->prestress->si(), 100e6);
+  EXPECT_EQ(e.fluid.name, "water");
+  expect_si(e.fluid.viscosity.si(), 1e-3);
+  expect_si(e.fluid.density.si(), 998.0);
+  expect_si(e.instrument.height_noise->si(), 20e-9);
+  expect_si(e.instrument.pressure_noise->si(), 10.0);
+  EXPECT_EQ(e.instrument.pressure_gain_uncertainty, 0.002);
+  expect_si(e.instrument.pressure_zero_uncertainty->si(), 5.0);
+  EXPECT_EQ(e.instrument.reference, folder.path() / "flat.gsf");
+  expect_si(e.rigid.inlet->length.si(), 5e-3);
+  expect_si(e.rigid.outlet->length.si(), 6e-3);
+}
+
+TEST(ReadExperiment, UnderstandsEveryColumnOfTheManual) {
+  const TestFolder folder;
+  write_full_example(folder);
+  const Experiment e = read_experiment(folder.path() / "experiment.toml");
+  ASSERT_EQ(e.hydrostatic.size(), 4u);
+  const HydrostaticMap& first = e.hydrostatic[0];
+  EXPECT_EQ(first.map, folder.path() / "h00.gsf");
+  EXPECT_EQ(first.name, "h00.gsf");
+  EXPECT_EQ(first.pressure_uncertainty.si(), 0.0);
+  EXPECT_EQ(first.sequence, 0);
+  EXPECT_EQ(first.direction, SweepDirection::up);
+  EXPECT_EQ(first.line, 2);
+  expect_si(e.hydrostatic[1].pressure_uncertainty.si(), 10.0);  // instrument.pressure_noise
+  EXPECT_EQ(e.hydrostatic[2].direction, SweepDirection::unknown);
+  EXPECT_EQ(e.hydrostatic[3].direction, SweepDirection::down);
+  ASSERT_EQ(e.flow.size(), 3u);
+  expect_si(e.flow[1].flow_rate.si(), 5e-6 / 60);
+  expect_si(e.flow[1].pressure_drop->si(), 1424.0);
+  expect_si(e.flow[1].outlet_pressure->si(), 30.0);
+  expect_si(e.flow[1].time->si(), 1.5);
+  EXPECT_EQ(e.flow[1].run, "Q5");
+  EXPECT_EQ(e.flow[2].run, "f02");
+  EXPECT_EQ(e.flow[2].pressure_drop, std::nullopt);
+  EXPECT_EQ(e.flow[2].outlet_pressure, std::nullopt);
+  EXPECT_EQ(e.flow[2].line, 4);
+}
+
+TEST(ReadExperiment, NeedsOnlyWhatTheMeasurementNeeds) {
+  const TestFolder folder;
+  write_full_example(folder);
+  folder.write("experiment.toml",
+               "manoscope = 1\n[channel]\nlength = \"15.5 mm\"\nwidth = \"1.7mm\"\n"
+               "height = \"175 µm\"\n[fluid]\nviscosity = \"1 cP\"\ndensity = \"0.998 g/cm3\"\n"
+               "[hydrostatic]\nlist = \"hydrostatic.csv\"\n");
+  folder.write("hydrostatic.csv", "pressure [mbar],map\n0,h00.gsf\n1,h01.gsf\n25,h02.gsf\n");
+  const Experiment e = read_experiment(folder.path());
+  EXPECT_EQ(e.name, folder.path().filename());
+  expect_si(e.channel.height.si(), 175e-6);
+  expect_si(e.fluid.density.si(), 998.0);
+  expect_si(e.hydrostatic[2].pressure.si(), 2500.0);
+  // No uncertainty of the row, none of the instrument.
+  EXPECT_EQ(e.hydrostatic[2].pressure_uncertainty.si(), 0.0);
+  EXPECT_EQ(e.channel.origin, std::nullopt);
+  EXPECT_FALSE(e.wall);
+  EXPECT_TRUE(e.flow.empty());
+}
+
+TEST(ReadExperiment, TakesListsInlineAsWell) {
+  const TestFolder folder;
+  write_full_example(folder);
+  std::string toml = replaced(kFullToml, "list = \"hydrostatic.csv\"",
+                              "maps = [\n"
+                              "  {map = \"h00.gsf\", pressure = \"0 Pa\", pressure_uncertainty = "
+                              "\"0 Pa\", sequence = 0, direction = \"up\"},\n"
+                              "  {map = \"h01.gsf\", pressure = \"1 mbar\"},\n"
+                              "  {map = \"h02.gsf\", pressure = \"2.5 kPa\"}]");
+  toml = replaced(toml, "list = \"flow.csv\"",
+                  "maps = [{map = \"f00.gsf\", flow_rate = \"5 mL/min\", run = \"Q5\", "
+                  "pressure_drop = \"1.42 kPa\", time = \"2 min\"}]");
+  folder.write("experiment.toml", toml);
+  const Experiment e = read_experiment(folder.path());
+  ASSERT_EQ(e.hydrostatic.size(), 3u);
+  EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty.si(), 0.0);
+  expect_si(e.hydrostatic[1].pressure.si(), 100.0);
+  expect_si(e.hydrostatic[1].pressure_uncertainty.si(), 10.0);
+  EXPECT_EQ(e.hydrostatic[2].line, 37);
+  ASSERT_EQ(e.flow.size(), 1u);
+  expect_si(e.flow[0].pressure_drop->si(), 1420.0);
+  expect_si(e.flow[0].time->si(), 120.0);
+}
+
+TEST(ReadExperiment, TakesTheTablesThatSpreadsheetsWrite) {
+  const TestFolder folder;
+  write_full_example(folder);
+  folder.write("hydrostatic.csv",
+               "\xEF\xBB\xBFmap;pressure [kPa];repeat;\r\nh00.gsf;0;1;\r\nh01.gsf;0,1;1;\r\n"
+               "h03.gsf;0,1;2;\r\nh02.gsf;2,5;1;\r\n;;;\r\n");
+  const Experiment e = read_experiment(folder.path());
+  ASSERT_EQ(e.hydrostatic.size(), 4u);
+  expect_si(e.hydrostatic[1].pressure.si(), 100.0);
+  expect_si(e.hydrostatic[3].pressure.si(), 2500.0);
+}
+
+TEST(ReadExperiment, TakesWindowsTextsToo) {
+  const TestFolder folder;
+  write_full_example(folder);
+  std::string toml = "\xEF\xBB\xBF";
+  for (const char* at = kFullToml; *at != '\0'; ++at)
+    toml += *at == '\n' ? "\r\n" : std::string(1, *at);
+  folder.write("experiment.toml", toml);
+  EXPECT_EQ(read_experiment(folder.path()).channel.outward, Outward::minus_height);
+}
+
+TEST(ReadExperiment, PathsAreRelativeToTheExperimentElseToTheList) {
+  const TestFolder folder;
+  write_full_example(folder);
+  folder.write("experiment.toml", replaced(kFullToml, "hydrostatic.csv", "rest/list.csv"));
+  folder.write("rest/list.csv", "map,pressure [Pa]\nh00.gsf,0\nrest/h01.gsf,100\nh09.gsf,300\n");
+  folder.write("rest/h00.gsf", "another map");
+  folder.write("rest/h01.gsf", "a map");
+  folder.write("rest/h09.gsf", "a map");
+  const Experiment e = read_experiment(folder.path());
+  EXPECT_EQ(e.hydrostatic[0].map, folder.path() / "h00.gsf");
+  EXPECT_EQ(e.hydrostatic[1].map, folder.path() / "rest/h01.gsf");
+  EXPECT_EQ(e.hydrostatic[2].map, folder.path() / "rest/h09.gsf");
+}
+
+TEST(ReadExperiment, ReadsThePracticeExperiments) {
+  for (const auto& [name, first_flow_rate] : {std::pair{"S1", 5.0}, std::pair{"S4", 12.0}}) {
+    const fs::path folder = fs::path(MANOSCOPE_SHARED_DIR) / "data/practice" / name;
+    if (!fs::exists(folder)) GTEST_SKIP() << "no practice experiments at " << folder;
+    const Experiment e = read_experiment(folder);
+    EXPECT_EQ(e.name, name);
+    EXPECT_EQ(e.hydrostatic.size(), 25u);
+    EXPECT_EQ(e.flow.size(), 8u);
+    EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty.si(), 0.0);
+    expect_si(e.hydrostatic[24].pressure_uncertainty.si(), 10.0);
+    expect_si(e.flow[0].flow_rate.si(), first_flow_rate * 1e-6 / 60);
+    EXPECT_GT(e.flow[7].pressure_drop->si(), e.flow[0].pressure_drop->si());
+  }
+}
+
+}  // namespace
+}  // namespace manoscope::experiment

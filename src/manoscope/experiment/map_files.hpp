@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manoscope/experiment/faults.hpp"
+
+namespace manoscope::experiment {
+
+/// Finds the files an experiment names and sees that they can be read; what they hold is for the
+/// readers to say.
+class MapFiles {
+ public:
+  explicit MapFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The path of a map, relative to the experiment's folder; where nothing is there, relative to
+  /// the list that names it.
+  /// @return A path in any case; with a fault at `place` added if it is no readable file.
+  std::filesystem::path find(const std::string& name, const Place& place, Faults& faults);
+
+  /// One spelling per file on disk, to tell a file that is named twice.
+  static std::string identity(const std::filesystem::path& path);
+
+ private:
+  std::string suggest(const std::filesystem::path& path);
+
+  std::filesystem::path folder_;
+  std::map<std::filesystem::path, std::vector<std::string>> listings_;
+  int n_missing_ = 0;
+};
+
+/// The whole of a file.
+/// @return nullopt, with a fault added, if it is not there, a folder, too large or unreadable.
+std::optional<std::string> read_file(const std::filesystem::path& path, const Place& place,
+                                     Faults& faults);
+
+}  // namespace manoscope::experiment

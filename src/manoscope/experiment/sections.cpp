@@ -1,0 +1,122 @@
+#include "manoscope/experiment/sections.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace manoscope::experiment {
+namespace {
+
+constexpr Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirection::plus_columns},
+                                                   {"-columns", FlowDirection::minus_columns},
+                                                   {"+rows", FlowDirection::plus_rows},
+                                                   {"-rows", FlowDirection::minus_rows}};
+constexpr Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
+                                       {"-height", Outward::minus_height}};
+
+/// The gap is the small side: another order is a slip of unit or of name.
+void check_proportions(const ChannelSection& channel, const TableReader& table, Faults& faults) {
+  const Length none{};
+  const auto told = [](Length value) { return fmt::format("{:g} mm", value.in(mm)); };
+  if (channel.height > none && channel.width > none && channel.height > channel.width) {
+    faults.add(
+        table.place("height"),
+        fmt::format("the height, {}, is above the width, {}", told(channel.height),
+                    told(channel.width)),
+        "The gap under a deformable wall is at most as high as wide: check both, their units "
+        "and whether they are swapped");
+  } else if (channel.height > none && channel.length > none && channel.height > channel.length) {
+    faults.add(table.place("height"),
+               fmt::format("the height, {}, is above the length, {}", told(channel.height),
+                           told(channel.length)),
+               "The gap is lower than the channel is long: check both and their units");
+  }
+  if (channel.height_uncertainty && channel.height > none &&
+      *channel.height_uncertainty >= channel.height) {
+    faults.add(table.place("height_uncertainty"),
+               fmt::format("the uncertainty, {}, is not below the height itself, {}",
+                           told(*channel.height_uncertainty), told(channel.height)),
+               "Give the standard uncertainty of the height: check its unit");
+  }
+}
+
+std::optional<Passage> read_passage(TableReader& rigid, const std::string& key) {
+  auto table = rigid.table(key);
+  if (!table) return std::nullopt;
+  Passage passage;
+  passage.length =
+      table->quantity<Length>("length", bounds::kLength, Need::required).value_or(Length{});
+  passage.width =
+      table->quantity<Length>("width", bounds::kWidth, Need::required).value_or(Length{});
+  passage.height =
+      table->quantity<Length>("height", bounds::kHeight, Need::required).value_or(Length{});
+  table->finish();
+  return passage;
+}
+
+}  // namespace
+
+ChannelSection read_channel(TableReader& table, Faults& faults) {
+  ChannelSection channel;
+  channel.length =
+      table.quantity<Length>("length", bounds::kLength, Need::required).value_or(Length{});
+  channel.width =
+      table.quantity<Length>("width", bounds::kWidth, Need::required).value_or(Length{});
+  channel.height =
+      table.quantity<Length>("height", bounds::kHeight, Need::required).value_or(Length{});
+  channel.height_uncertainty =
+      table.quantity<Length>("height_uncertainty", bounds::kLengthUncertainty);
+  channel.origin = table.pair<Length>("origin", bounds::kOrigin);
+  channel.flow = table.choice("flow", kFlowDirections);
+  channel.rotation = table.quantity<Angle>("rotation", bounds::kRotation);
+  channel.outward = table.choice("outward", kOutwards);
+  table.finish();
+  check_proportions(channel, table, faults);
+  return channel;
+}
+
+WallSection read_wall(TableReader& table) {
+  WallSection wall;
+  wall.material = table.text("material").value_or("");
+  wall.thickness = table.quantity<Length>("thickness", bounds::kThickness);
+  wall.youngs_modulus = table.quantity<Pressure>("youngs_modulus", bounds::kModulus);
+  wall.poisson_ratio = table.number("poisson_ratio", bounds::kPoissonRatio, "0.23");
+  wall.prestress = table.quantity<Pressure>("prestress", bounds::kPrestress);
+  table.finish();
+  return wall;
+}
+
+FluidSection read_fluid(TableReader& table) {
+  FluidSection fluid;
+  fluid.name = table.text("name").value_or("");
+  fluid.viscosity = table.quantity<Viscosity>("viscosity", bounds::kViscosity, Need::required)
+                        .value_or(Viscosity{});
+  fluid.density =
+      table.quantity<Density>("density", bounds::kDensity, Need::required).value_or(Density{});
+  table.finish();
+  return fluid;
+}
+
+InstrumentSection read_instrument(TableReader& table) {
+  InstrumentSection instrument;
+  instrument.height_noise = table.quantity<Length>("height_noise", bounds::kHeightNoise);
+  instrument.pressure_noise =
+      table.quantity<Pressure>("pressure_noise", bounds::kPressureUncertainty);
+  instrument.pressure_gain_uncertainty =
+      table.number("pressure_gain_uncertainty", bounds::kGainUncertainty, "0.002");
+  instrument.pressure_zero_uncertainty =
+      table.quantity<Pressure>("pressure_zero_uncertainty", bounds::kPressureUncertainty);
+  if (const auto reference = table.text("reference")) instrument.reference = *reference;
+  table.finish();
+  return instrument;
+}
+
+RigidSection read_rigid(TableReader& table) {
+  RigidSection rigid;
+  rigid.inlet = read_passage(table, "inlet");
+  rigid.outlet = read_passage(table, "outlet");
+  table.finish();
+  return rigid;
+}
+
+}  // namespace manoscope::experiment

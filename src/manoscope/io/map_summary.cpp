@@ -1,0 +1,67 @@
+#include "manoscope/io/map_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace manoscope::io {
+
+ChannelSummary summarise(const Channel& channel) {
+  ChannelSummary summary;
+  summary.name = channel.name;
+  summary.unit = channel.unit;
+  const CameraGrid& grid = channel.grid;
+  summary.nx = grid.nx;
+  summary.ny = grid.ny;
+  if (grid.pitch_x > Length{}) {
+    summary.pitch_x_m = grid.pitch_x.si();
+    summary.size_x_m = grid.size_x().si();
+  }
+  if (grid.pitch_y > Length{}) {
+    summary.pitch_y_m = grid.pitch_y.si();
+    summary.size_y_m = grid.size_y().si();
+  }
+
+  // Row by row, so that the round-off of long sums stays small. Two passes: the rms of a map far
+  // from zero would drown in the difference of two large sums.
+  double least = 0.0, most = 0.0, sum = 0.0;
+  Index n = 0;
+  for (Index iy = 0; iy < channel.values.rows(); ++iy) {
+    double row = 0.0;
+    for (Index ix = 0; ix < channel.values.cols(); ++ix) {
+      const double value = channel.values(iy, ix);
+      if (!std::isfinite(value)) continue;
+      least = n == 0 ? value : std::min(least, value);
+      most = n == 0 ? value : std::max(most, value);
+      row += value;
+      ++n;
+    }
+    sum += row;
+  }
+  summary.missing = channel.values.size() - n;
+  if (n == 0) return summary;
+  const double mean = sum / static_cast<double>(n);
+  double squares = 0.0;
+  for (Index iy = 0; iy < channel.values.rows(); ++iy) {
+    double row = 0.0;
+    for (Index ix = 0; ix < channel.values.cols(); ++ix) {
+      const double value = channel.values(iy, ix);
+      if (std::isfinite(value)) row += (value - mean) * (value - mean);
+    }
+    squares += row;
+  }
+  summary.min = least;
+  summary.max = most;
+  summary.mean = mean;
+  summary.rms = std::sqrt(squares / static_cast<double>(n));
+  return summary;
+}
+
+MapSummary summarise_map(const std::filesystem::path& path, const ReadOptions& options) {
+  MapSummary summary{path, std::string(find_reader(path).name()), {}};
+  for (const Channel& channel : read_channels(path, options)) {
+    summary.channels.push_back(summarise(channel));
+  }
+  return summary;
+}
+
+}  // namespace manoscope::io

@@ -1,0 +1,90 @@
+#pragma once
+
+// For the tests of this folder only.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::io::testing {
+
+/// A folder of one test, removed with everything in it.
+class TestFolder {
+ public:
+  TestFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::temp_directory_path() /
+            ("manoscope_io_" + std::to_string(::getpid()) + "_" + test->test_suite_name() + "_" +
+             test->name());
+    std::filesystem::create_directories(path_);
+  }
+  ~TestFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TestFolder(const TestFolder&) = delete;
+  TestFolder& operator=(const TestFolder&) = delete;
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+  std::filesystem::path write(const std::string& name, std::string_view bytes) const {
+    std::ofstream out(path_ / name, std::ios::binary);
+    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What `body` complains about: "<where> | <found> | <mend>", or "" if it does not.
+template <class Body>
+std::string complaint(Body&& body) {
+  try {
+    body();
+  } catch (const InputError& error) {
+    return error.where() + " | " + error.found() + " | " + error.mend();
+  }
+  return {};
+}
+
+inline ::testing::AssertionResult contains(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "\"" << text << "\" does not contain \"" << part << "\"";
+}
+
+inline std::string little(std::uint64_t value, int n_bytes) {
+  std::string bytes;
+  for (int i = 0; i < n_bytes; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
+  return bytes;
+}
+inline std::string big(std::uint64_t value, int n_bytes) {
+  const std::string bytes = little(value, n_bytes);
+  return {bytes.rbegin(), bytes.rend()};
+}
+inline std::string little(float value) { return little(std::bit_cast<std::uint32_t>(value), 4); }
+inline std::string big(float value) { return big(std::bit_cast<std::uint32_t>(value), 4); }
+inline std::string big(double value) { return big(std::bit_cast<std::uint64_t>(value), 8); }
+
+/// Shared practice data; empty where it is absent.
+inline std::filesystem::path shared_data(const std::string& name) {
+  const std::filesystem::path path = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data" / name;
+  return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+}  // namespace manoscope::io::testing

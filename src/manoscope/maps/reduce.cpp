@@ -1,0 +1,167 @@
+#include "manoscope/maps/reduce.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/core/flags.hpp"
+#include "manoscope/maps/channel_map.hpp"
+#include "manoscope/maps/despike.hpp"
+#include "manoscope/maps/level.hpp"
+
+namespace manoscope::maps {
+namespace {
+
+double share(const Flags2& flags, FlagBits bit) {
+  Index count = 0;
+  for (Index i = 0; i < flags.size(); ++i) count += (flags.data()[i] & bit) != 0;
+  return static_cast<double>(count) / static_cast<double>(flags.size());
+}
+
+/// dzeta/dx by a line through the good stations within `reach` to either side; 0 where too few.
+Array1 slope_along(const Profile& profile, Index reach) {
+  const Index n = profile.x.size();
+  Array1 slope = Array1::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    double count = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+    for (Index j = std::max<Index>(0, i - reach); j <= std::min(n - 1, i + reach); ++j) {
+      if (profile.flags[j] != 0) continue;
+      const double dx = profile.x[j] - profile.x[i], y = profile.zeta[j];
+      count += 1.0;
+      sx += dx;
+      sy += y;
+      sxx += dx * dx;
+      sxy += dx * y;
+    }
+    const double determinant = count * sxx - sx * sx;
+    if (count >= 2.0 && determinant > 0.0) slope[i] = (count * sxy - sx * sy) / determinant;
+  }
+  return slope;
+}
+
+/// Height at mid-channel on the centre line: c0 of c0 + c1 x + c2 z + c3 z^2 fitted to a patch
+/// about it, a fifth of the width across and 5 % of it along the flow, five by two pixels at least.
+void measure_crest(const LeveledMap& map, const ChannelFrame& frame, ReducedMap& result) {
+  const ChannelGrid& grid = map.deflection.grid();
+  const double reach_x = std::max(0.025 * frame.width.si(), 1.01 * grid.pitch_x.si());
+  const double reach_z = std::max(0.1 * frame.width.si(), 2.51 * grid.pitch_z.si());
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (Index iz = 0; iz < grid.nz; ++iz) {
+    const double b = grid.z(iz) / reach_z;
+    if (std::abs(b) > 1.0) continue;
+    for (Index ix = 0; ix < grid.nx; ++ix) {
+      const double a = (grid.x(ix) - 0.5 * frame.length.si()) / reach_x;
+      if (std::abs(a) > 1.0 || map.deflection.flags()(iz, ix) != 0) continue;
+      const Eigen::Vector4d row(1.0, a, b, b * b);
+      normal += row * row.transpose();
+      right += map.deflection.zeta()(iz, ix) * row;
+    }
+  }
+  result.crest = result.crest_uncertainty = std::numeric_limits<double>::quiet_NaN();
+  const auto factors = normal.ldlt();
+  constexpr double kLeastPivot = 1e-3;  // below it the patch holds too few pixels for the fit
+  if (!(factors.vectorD().minCoeff() > kLeastPivot * normal(0, 0))) return;
+  result.crest = factors.solve(right)[0];
+  const double gain = factors.solve(Eigen::Vector4d::Unit(0))[0];  // variance for unit noise
+  const double shared = map.deflection.noise_length_x() * map.deflection.noise_length_z();
+  const double pixel = map.deflection.noise().si();
+  result.crest_uncertainty =
+      std::sqrt(pixel * pixel * std::min(1.0, shared * gain) + map.plane.covariance(0, 0));
+}
+
+/// Distance from the channel at which its rim begins: the larger of 3 pixels and 2 % of the width,
+/// but no more than half the rim that the map shows on its widest side.
+Length auto_margin(const ChannelGrid& grid, const ChannelFrame& frame) {
+  const double half = 0.5 * frame.width.si();
+  const double widest = std::max({-grid.x(0), grid.x(grid.nx - 1) - frame.length.si(),
+                                  -grid.z(0) - half, grid.z(grid.nz - 1) - half});
+  const Length wanted = std::max(3.0 * std::max(grid.pitch_x, grid.pitch_z), 0.02 * frame.width);
+  return std::min(wanted, Length::from_si(0.5 * std::max(0.0, widest)));
+}
+
+}  // namespace
+
+void ReduceOptions::validate() const {
+  if (!(spike_threshold >= 3.0)) {
+    throw InputError("--spike-threshold", fmt::format("is {}", spike_threshold),
+                     "Give at least 3, or ordinary noise would be flagged");
+  }
+  if (rim_margin && *rim_margin < Length{}) {
+    throw InputError("--rim-margin", "is negative", "Give a length of 0 or more");
+  }
+  if (shift_uncertainty && *shift_uncertainty < Length{}) {
+    throw InputError("--shift-uncertainty", "is negative", "Give a length of 0 or more");
+  }
+  width.validate();
+}
+
+LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame,
+                     std::optional<Length> height_noise, const std::string& name,
+                     const ReduceOptions& options) {
+  options.validate();
+  ChannelMap work = to_channel_frame(map, frame);
+  const Length margin = options.rim_margin.value_or(auto_margin(work.grid, frame));
+  const Flags2 rim = rim_mask(work.grid, frame.length, frame.width, margin);
+
+  RimPlane plane = fit_rim_plane(work, rim, name);
+  subtract_plane(work, plane);
+  MapCondition condition;
+  condition.name = name;
+  condition.tilt_x = plane.tilt_x;
+  condition.tilt_z = plane.tilt_z;
+  condition.missing = share(map.flags(), PixelFlag::no_data);
+  condition.noise = measure_noise(work, rim);
+  const Length noise = height_noise.value_or(condition.noise.sigma);
+  // A noise-free map still has round-off; a picometre keeps the threshold above it.
+  const Length spike_noise = std::max({noise, condition.noise.sigma, 1e-3 * nm});
+  const Index spikes = flag_spikes(work, spike_noise, options.spike_threshold);
+  condition.spikes = static_cast<double>(spikes) / static_cast<double>(work.flags.size());
+
+  const double shared = condition.noise.length_x * condition.noise.length_z;
+  const double scale = plane.sigma > Length{} ? noise / plane.sigma : 0.0;
+  plane.covariance *= shared * scale * scale;
+  DeflectionMap deflection(work.grid, std::move(work.height), std::move(work.flags), noise,
+                           condition.noise.length_x, condition.noise.length_z);
+  return {std::move(deflection), plane, std::move(condition)};
+}
+
+ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame,
+                      std::optional<Length> height_noise, const std::string& name,
+                      const ReduceOptions& options) {
+  const LeveledMap leveled = level_map(map, frame, height_noise, name, options);
+  ReducedMap result;
+  result.profile = width_average(leveled.deflection, leveled.plane, frame.length, frame.width, name,
+                                 options.width);
+  result.condition = leveled.condition;
+  const Length shift = options.shift_uncertainty.value_or(leveled.deflection.grid().pitch_x *
+                                                          (1.0 / std::sqrt(12.0)));
+  constexpr Index kReach = 4;  // columns to either side: noise of the slope well below its size
+  result.profile.uncertainty.modes.push_back({fmt::format("shift of {}", name), "registration",
+                                              slope_along(result.profile, kReach) * shift.si()});
+  measure_crest(leveled, frame, result);
+  return result;
+}
+
+HeightMap subtract_reference(const HeightMap& map, const HeightMap& reference,
+                             const std::string& name) {
+  if (!(map.grid() == reference.grid())) {
+    throw InputError(
+        name,
+        fmt::format("has {} x {} pixels of {:.4g} x {:.4g} um, the reference map "
+                    "{} x {} of {:.4g} x {:.4g} um",
+                    map.grid().nx, map.grid().ny, map.grid().pitch_x.in(um),
+                    map.grid().pitch_y.in(um), reference.grid().nx, reference.grid().ny,
+                    reference.grid().pitch_x.in(um), reference.grid().pitch_y.in(um)),
+        "Give a reference map taken with the same camera settings");
+  }
+  Flags2 flags = map.flags();
+  for (Index i = 0; i < flags.size(); ++i) flags.data()[i] |= reference.flags().data()[i];
+  return {map.grid(), map.height() - reference.height(), std::move(flags)};
+}
+
+}  // namespace manoscope::maps

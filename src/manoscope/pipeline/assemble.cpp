@@ -1,0 +1,175 @@
+#include "manoscope/pipeline/assemble.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "manoscope/core/flags.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// `values` where `keep`, NaN elsewhere.
+template <class Keep>
+Array1 masked(const Array1& values, Keep keep) {
+  Array1 result(values.size());
+  for (Index i = 0; i < values.size(); ++i) result[i] = keep(i) ? values[i] : kNan;
+  return result;
+}
+
+/// Mean crest deflection of the maps taken at one pressure.
+void store_crest(Index k, Pressure pressure, const experiment::Experiment& experiment,
+                 const std::vector<maps::ReducedMap>& reduced, results::Measurement& m) {
+  double sum = 0.0, variance = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < reduced.size(); ++i) {
+    if (experiment.hydrostatic[i].pressure != pressure || std::isnan(reduced[i].crest)) continue;
+    sum += reduced[i].crest;
+    variance += reduced[i].crest_uncertainty * reduced[i].crest_uncertainty;
+    count += 1.0;
+  }
+  m.crest_deflection[k] = count > 0.0 ? sum / count : kNan;
+  m.crest_deflection_uncertainty[k] = count > 0.0 ? std::sqrt(variance) / count : kNan;
+}
+
+/// Variance by budget line, (n_x) each.
+std::map<std::string, Array1> variance_by_source(const Uncertainty& uncertainty) {
+  std::map<std::string, Array1> lines;
+  lines["pixel noise"] = uncertainty.independent.square();
+  for (const ErrorMode& mode : uncertainty.modes) {
+    auto [place, is_new] = lines.try_emplace(mode.source, Array1::Zero(mode.effect.size()));
+    place->second += mode.effect.square();
+  }
+  return lines;
+}
+
+void store_budget(const std::vector<RunFindings>& findings, results::Measurement& m) {
+  const auto n_runs = static_cast<Index>(findings.size());
+  std::map<std::string, std::size_t> place;
+  for (Index r = 0; r < n_runs; ++r) {
+    const auto& reading = findings[static_cast<std::size_t>(r)].reading;
+    for (const auto& [source, variance] : variance_by_source(reading.uncertainty)) {
+      const auto [found, is_new] = place.try_emplace(source, m.budget_source.size());
+      if (is_new) {
+        m.budget_source.push_back(source);
+        m.pressure_variance.push_back(Array2::Zero(n_runs, m.x.size()));
+      }
+      m.pressure_variance[found->second].row(r) =
+          masked(variance, [&](Index i) { return reading.answered(i); });
+    }
+  }
+}
+
+}  // namespace
+
+void store_calibration(const calibration::ConstitutiveCurves& curves,
+                       const experiment::Experiment& experiment,
+                       const std::vector<maps::ReducedMap>& reduced, results::Measurement& m) {
+  const auto n = static_cast<Index>(curves.levels.size());
+  m.x = curves.x;
+  m.level_pressure = m.level_pressure_uncertainty = Array1(n);
+  m.crest_deflection = m.crest_deflection_uncertainty = Array1(n);
+  m.static_deflection = m.static_deflection_uncertainty = Array2(n, curves.x.size());
+  for (Index k = 0; k < n; ++k) {
+    const calibration::Level& level = curves.levels[static_cast<std::size_t>(k)];
+    const auto counts = [&](Index i) { return level.profile.flags[i] == 0; };
+    m.level_pressure[k] = level.pressure.si();
+    m.level_pressure_uncertainty[k] = level.uncertainty.si();
+    m.static_deflection.row(k) = masked(level.profile.zeta, counts);
+    m.static_deflection_uncertainty.row(k) = masked(level.profile.uncertainty.standard(), counts);
+    store_crest(k, level.pressure, experiment, reduced, m);
+  }
+}
+
+void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
+                results::Measurement& m) {
+  const auto n = static_cast<Index>(runs.size());
+  const Index n_x = m.x.size();
+  for (Array1* scalar :
+       {&m.flow_rate, &m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
+        &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
+        &m.parasitic_drop, &m.en_number}) {
+    *scalar = Array1::Constant(n, kNan);
+  }
+  for (Array2* field :
+       {&m.deflection, &m.deflection_uncertainty, &m.pressure, &m.pressure_uncertainty,
+        &m.pressure_lower, &m.pressure_upper, &m.resistance_pressure}) {
+    *field = Array2::Constant(n, n_x, kNan);
+  }
+  m.pressure_flags = Flags2::Zero(n, n_x);
+  m.test_section = Array2::Constant(n, 2, kNan);
+  std::vector<double> x, x_uncertainty, pressure;
+  for (Index r = 0; r < n; ++r) {
+    const FlowRun& run = runs[static_cast<std::size_t>(r)];
+    const RunFindings& found = findings[static_cast<std::size_t>(r)];
+    const inversion::PressureReading& reading = found.reading;
+    const auto measured = [&](Index i) { return run.profile.flags[i] == 0; };
+    const auto answered = [&](Index i) { return reading.answered(i); };
+    m.run.push_back(run.name);
+    m.flow_rate[r] = run.flow_rate.si();
+    m.deflection.row(r) = masked(run.profile.zeta, measured);
+    m.deflection_uncertainty.row(r) = masked(run.profile.uncertainty.standard(), measured);
+    m.pressure.row(r) = masked(reading.pressure, answered);
+    m.pressure_uncertainty.row(r) = masked(reading.uncertainty.standard(), answered);
+    m.pressure_lower.row(r) = masked(reading.lower, answered);
+    m.pressure_upper.row(r) = masked(reading.upper, answered);
+    m.pressure_flags.row(r) = reading.flags;
+    Matrix covariance = reading.uncertainty.covariance();
+    for (Index i = 0; i < n_x; ++i) {
+      if (answered(i)) continue;
+      covariance.row(i).setConstant(kNan);
+      covariance.col(i).setConstant(kNan);
+    }
+    m.pressure_covariance.push_back(std::move(covariance));
+    m.resistance_pressure.row(r) = found.resistance_pressure;
+    m.channel_resistance_drop[r] = found.channel_resistance_drop;
+    m.reynolds[r] = found.reynolds;
+    if (run.transducer_drop) m.transducer_drop[r] = run.transducer_drop->si();
+    if (found.parasitic_drop) m.parasitic_drop[r] = found.parasitic_drop->si();
+    if (found.section) {
+      m.test_section(r, 0) = reading.x[found.section->first];
+      m.test_section(r, 1) = reading.x[found.section->last];
+    }
+    if (found.agreement) {
+      m.extracted_drop[r] = found.agreement->extracted.value;
+      m.extracted_drop_uncertainty[r] = found.agreement->extracted.standard_uncertainty();
+      m.resistance_drop[r] = found.agreement->resistance.value;
+      m.resistance_drop_uncertainty[r] = found.agreement->resistance.standard_uncertainty();
+      m.en_number[r] = found.agreement->en_number;
+    }
+    for (const inversion::Intersection& crossing : found.intersections) {
+      m.crossing_run.push_back(static_cast<int>(r));
+      x.push_back(crossing.x.si());
+      x_uncertainty.push_back(crossing.x_uncertainty.si());
+      pressure.push_back(crossing.pressure.si());
+    }
+  }
+  const auto to_array = [](const std::vector<double>& values) -> Array1 {
+    return Eigen::Map<const Array1>(values.data(), static_cast<Index>(values.size()));
+  };
+  m.crossing_x = to_array(x);
+  m.crossing_x_uncertainty = to_array(x_uncertainty);
+  m.crossing_pressure = to_array(pressure);
+  store_budget(findings, m);
+}
+
+void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& m) {
+  std::vector<const maps::MapCondition*> conditions;
+  for (const auto& map : reduced.hydrostatic) conditions.push_back(&map.condition);
+  for (const auto& map : reduced.flow) conditions.push_back(&map.condition);
+  const auto n = static_cast<Index>(conditions.size());
+  m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n);
+  for (Index i = 0; i < n; ++i) {
+    const maps::MapCondition& condition = *conditions[static_cast<std::size_t>(i)];
+    m.map.push_back(condition.name);
+    m.map_tilt_x[i] = condition.tilt_x;
+    m.map_tilt_z[i] = condition.tilt_z;
+    m.map_noise[i] = condition.noise.sigma.si();
+    m.map_missing[i] = condition.missing;
+    m.map_spikes[i] = condition.spikes;
+  }
+}
+
+}  // namespace manoscope::pipeline

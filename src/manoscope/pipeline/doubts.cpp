@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "manoscope/core/flags.hpp"
+#include "manoscope/pipeline/assemble.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+using Words = std::vector<std::string>;
+
+void doubt_place(const experiment::Experiment& experiment, const maps::FoundPlace& place,
+                 Words& doubts) {
+  constexpr double kShare = 0.05;  // of the width: about the size of the end effects of the edges
+  const double bound = kShare * experiment.channel.width.si();
+  const auto say = [&](const char* what, double misfit, Length stated) {
+    if (!(std::abs(misfit) > bound)) return;
+    doubts.push_back(
+        fmt::format("The wall moves over a {} of {:.2f} mm, the experiment file says "
+                    "{:.2f} mm: check channel.{}",
+                    what, (stated.si() + misfit) * 1e3, stated.in(mm), what));
+  };
+  say("length", place.length_misfit, experiment.channel.length);
+  say("width", place.width_misfit, experiment.channel.width);
+}
+
+void doubt_maps(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
+                Words& doubts) {
+  constexpr double kNoiseRatio = 1.3, kMissing = 0.2, kCorrelated = 2.0;
+  int noisy = 0, gappy = 0, correlated = 0;
+  double worst_ratio = 1.0, worst_missing = 0.0, worst_length = 1.0;
+  const auto look = [&](const maps::MapCondition& condition) {
+    if (experiment.instrument.height_noise) {
+      const double ratio = condition.noise.sigma / *experiment.instrument.height_noise;
+      noisy += ratio > kNoiseRatio;
+      worst_ratio = std::max(worst_ratio, ratio);
+    }
+    gappy += condition.missing > kMissing;
+    worst_missing = std::max(worst_missing, condition.missing);
+    const double length = std::max(condition.noise.length_x, condition.noise.length_z);
+    correlated += length > kCorrelated;
+    worst_length = std::max(worst_length, length);
+  };
+  for (const auto& map : reduced.hydrostatic) look(map.condition);
+  for (const auto& map : reduced.flow) look(map.condition);
+  if (noisy > 0) {
+    doubts.push_back(
+        fmt::format("{} maps are noisier on their rim than instrument.height_noise "
+                    "says, up to {:.1f} times: the error bars may be too small",
+                    noisy, worst_ratio));
+  }
+  if (gappy > 0) {
+    doubts.push_back(fmt::format("{} maps lack more than {:.0f} % of their pixels, up to {:.0f} %",
+                                 gappy, 100 * kMissing, 100 * worst_missing));
+  }
+  if (correlated > 0) {
+    doubts.push_back(fmt::format(
+        "Pixel noise of {} maps is correlated over up to {:.1f} pixels: noise of neighbouring "
+        "stations is not independent along x, though treated so",
+        correlated, worst_length));
+  }
+}
+
+void doubt_run(const FlowRun& run, const RunFindings& found, Words& doubts) {
+  const Flags1& flags = found.reading.flags;
+  const auto count = [&](FlagBits bit, Index first, Index last) {
+    Index n = 0;
+    for (Index i = first; i <= last; ++i) n += (flags[i] & bit) != 0;
+    return n;
+  };
+  const Index n = flags.size();
+  if (!found.section) {
+    doubts.push_back(fmt::format(
+        "Run {}: no test section, for hardly a station has an answer "
+        "({} of {} out of calibration, {} ambiguous, {} insensitive)",
+        run.name, count(ReadingFlag::out_of_calibration, 0, n - 1), n,
+        count(ReadingFlag::ambiguous, 0, n - 1), count(ReadingFlag::insensitive, 0, n - 1)));
+    return;
+  }
+  const Index first = found.section->first, last = found.section->last;
+  const auto say = [&](FlagBits bit, const char* what) {
+    const Index bad = count(bit, first, last);
+    if (bad == 0) return;
+    doubts.push_back(
+        fmt::format("Run {}: {} of {} stations of the test section have no reading, {}", run.name,
+                    bad, last - first + 1, what));
+  };
+  say(ReadingFlag::ambiguous, "for more than one pressure fits (buckled wall)");
+  say(ReadingFlag::out_of_calibration, "for the deflection is outside the calibrated levels");
+  say(ReadingFlag::insensitive, "for the wall hardly answers there");
+}
+
+}  // namespace
+
+Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPlace& place,
+                  const ReducedExperiment& reduced, const std::vector<FlowRun>& runs,
+                  const std::vector<RunFindings>& findings) {
+  Words doubts;
+  doubt_place(experiment, place, doubts);
+  doubt_maps(experiment, reduced, doubts);
+  if (!experiment.channel.height_uncertainty && !runs.empty()) {
+    doubts.emplace_back(
+        "channel.height_uncertainty is not given: the uncertainty of QR lacks that of the gap");
+  }
+  for (std::size_t r = 0; r < runs.size(); ++r) doubt_run(runs[r], findings[r], doubts);
+  return doubts;
+}
+
+}  // namespace manoscope::pipeline

@@ -1,0 +1,144 @@
+#include "manoscope/pipeline/measure.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "manoscope/core/options.hpp"
+#include "manoscope/core/provenance.hpp"
+#include "manoscope/flow/parasitic.hpp"
+#include "manoscope/pipeline/assemble.hpp"
+#include "manoscope/pipeline/stages.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+using experiment::Experiment;
+
+flow::Channel channel_of(const Experiment& experiment) {
+  return {experiment.channel.length, experiment.channel.width, experiment.channel.height};
+}
+
+flow::Fluid fluid_of(const Experiment& experiment) {
+  return {experiment.fluid.viscosity, experiment.fluid.density};
+}
+
+std::optional<Pressure> parasitic_drop(const Experiment& experiment, FlowRate flow_rate) {
+  if (!experiment.rigid.inlet && !experiment.rigid.outlet) return std::nullopt;
+  Pressure drop{};
+  for (const auto& passage : {experiment.rigid.inlet, experiment.rigid.outlet}) {
+    if (!passage) continue;
+    drop += flow::passage_drop(experiment.fluid.viscosity, flow_rate,
+                               {passage->length, passage->width, passage->height});
+  }
+  return drop;
+}
+
+RunFindings read_run(const Experiment& experiment, const calibration::ConstitutiveCurves& curves,
+                     const FlowRun& run, const MeasureOptions& options) {
+  const flow::Channel channel = channel_of(experiment);
+  const flow::Fluid fluid = fluid_of(experiment);
+  const inversion::GaugeErrors gauge{
+      experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
+      experiment.instrument.pressure_zero_uncertainty.value_or(Pressure{})};
+
+  RunFindings found;
+  found.reading = inversion::read_pressure(curves, run.profile, gauge, options.reading);
+  found.section =
+      inversion::find_test_section(found.reading, channel.length, channel.width, options.section);
+  inversion::flag_outside(found.reading, found.section);
+  found.intersections = inversion::find_intersections(curves.levels, run.profile, channel.width,
+                                                      options.intersections);
+  found.reynolds = validation::mean_reynolds(channel, fluid, run.flow_rate, run.profile);
+  found.channel_resistance_drop =
+      validation::channel_resistance_drop(channel, fluid, run.flow_rate, run.profile).si();
+  found.parasitic_drop = parasitic_drop(experiment, run.flow_rate);
+  found.resistance_pressure =
+      Array1::Constant(curves.x.size(), std::numeric_limits<double>::quiet_NaN());
+  if (found.section) {
+    const Length height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{});
+    found.agreement = validation::compare_drops(channel, fluid, run.flow_rate, height_uncertainty,
+                                                run.profile, found.reading, *found.section);
+    found.resistance_pressure = validation::resistance_pressure(
+        channel, fluid, run.flow_rate, run.profile, found.reading, *found.section);
+  }
+  return found;
+}
+
+std::string settings_text(const MeasureOptions& options) {
+  std::string text;
+  for (const OptionInfo& option : list_options(options)) {
+    text += fmt::format("{} = {}\n", option.name, option.value);
+  }
+  return text;
+}
+
+std::string place_text(const ChannelFrame& frame) {
+  constexpr const char* kFlow[] = {"+columns", "-columns", "+rows", "-rows"};
+  return fmt::format(
+      "place: origin = ({} m, {} m), flow = {}, across {}, rotation = {} rad, "
+      "outward = {}\n",
+      frame.origin_x.si(), frame.origin_y.si(), kFlow[static_cast<int>(frame.flow)],
+      frame.across_reversed ? "reversed" : "forward", frame.rotation.si(),
+      frame.outward == Outward::plus_height ? "+height" : "-height");
+}
+
+void store_provenance(const Experiment& experiment, const ReducedExperiment& reduced,
+                      const MeasureOptions& options, results::Measurement& m) {
+  m.title = "Pressure inside the micro-channel of " + experiment.name;
+  m.source = fmt::format("manoscope {} ({})", program_version(), source_revision());
+  m.history = "manoscope measure";
+  m.experiment = experiment.text;
+  m.settings = settings_text(options) + place_text(reduced.frame);
+  for (std::size_t i = 0; i < reduced.hash.size(); ++i) {
+    const std::size_t n_static = experiment.hydrostatic.size();
+    const std::string& name =
+        i < n_static ? experiment.hydrostatic[i].name : experiment.flow[i - n_static].name;
+    m.inputs += fmt::format("{}  {}\n", name, reduced.hash[i]);
+  }
+  m.channel_length = experiment.channel.length.si();
+  m.channel_width = experiment.channel.width.si();
+  m.channel_height = experiment.channel.height.si();
+  m.channel_height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{}).si();
+  m.viscosity = experiment.fluid.viscosity.si();
+  m.density = experiment.fluid.density.si();
+  m.coverage = options.reading.coverage;
+}
+
+}  // namespace
+
+void MeasureOptions::validate() const {
+  reduce.validate();
+  curves.validate();
+  reading.validate();
+  section.validate();
+}
+
+results::Measurement measure(const Experiment& experiment, const MeasureOptions& options,
+                             int n_threads, const Monitor& monitor) {
+  options.validate();
+  monitor.report("finding the channel", 0.0);
+  const maps::FoundPlace place = place_channel(experiment);
+  const ReducedExperiment reduced =
+      reduce_maps(experiment, place.frame, options.reduce, n_threads, monitor);
+  const calibration::ConstitutiveCurves curves =
+      calibration::fit_curves(make_levels(experiment, reduced.hydrostatic), options.curves);
+
+  const std::vector<FlowRun> runs = make_runs(experiment, reduced.flow);
+  std::vector<RunFindings> findings;
+  for (const FlowRun& run : runs) {
+    monitor.checkpoint();
+    monitor.report("reading p(x)",
+                   static_cast<double>(findings.size()) / static_cast<double>(runs.size()));
+    findings.push_back(read_run(experiment, curves, run, options));
+  }
+  results::Measurement measurement;
+  store_provenance(experiment, reduced, options, measurement);
+  store_calibration(curves, experiment, reduced.hydrostatic, measurement);
+  store_runs(runs, findings, measurement);
+  store_map_conditions(reduced, measurement);
+  measurement.warnings = find_doubts(experiment, place, reduced, runs, findings);
+  return measurement;
+}
+
+}  // namespace manoscope::pipeline

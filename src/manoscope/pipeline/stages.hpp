@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manoscope/calibration/levels.hpp"
+#include "manoscope/core/frame.hpp"
+#include "manoscope/core/monitor.hpp"
+#include "manoscope/experiment/experiment.hpp"
+#include "manoscope/maps/reduce.hpp"
+#include "manoscope/maps/region.hpp"
+
+namespace manoscope::pipeline {
+
+/// The reduced maps of an experiment, in the order of its lists.
+struct ReducedExperiment {
+  ChannelFrame frame;
+  std::vector<maps::ReducedMap> hydrostatic, flow;
+  std::vector<std::string> hash;  ///< SHA-256 of each map, hydrostatic first
+};
+
+/// Where the channel lies: as the experiment says, what it leaves out found from the maps of lowest
+/// and highest pressure and of the largest flow rate.
+maps::FoundPlace place_channel(const experiment::Experiment& experiment);
+
+/// Reads and reduces every map.
+ReducedExperiment reduce_maps(const experiment::Experiment& experiment, const ChannelFrame& frame,
+                              const maps::ReduceOptions& options, int n_threads,
+                              const Monitor& monitor);
+
+/// The calibration levels of an experiment, one a map.
+std::vector<calibration::Level> make_levels(const experiment::Experiment& experiment,
+                                            const std::vector<maps::ReducedMap>& reduced);
+
+/// One flow run: the mean profile of its maps.
+struct FlowRun {
+  std::string name;
+  FlowRate flow_rate{};
+  Profile profile;
+  std::optional<Pressure> transducer_drop;  ///< mean over the maps that have one
+};
+
+/// Runs in the order of their first map.
+std::vector<FlowRun> make_runs(const experiment::Experiment& experiment,
+                               const std::vector<maps::ReducedMap>& reduced);
+
+}  // namespace manoscope::pipeline

@@ -1,0 +1,251 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "manoscope/report/figure_data.hpp"
+#include "manoscope/report/figures.hpp"
+#include "manoscope/report/plot_script.hpp"
+
+namespace manoscope::report {
+namespace {
+
+using results::Measurement;
+
+Array1 row(const Array2& values, Index index) { return thinned(values.row(index).transpose()); }
+
+/// Stations, pressures and bars of one run's crossings with the static profiles.
+struct Crossings {
+  Array1 x, pressure, bar;
+};
+
+Crossings crossings_of(const Measurement& m, Index run) {
+  std::vector<Index> own;
+  for (std::size_t i = 0; i < m.crossing_run.size(); ++i) {
+    if (m.crossing_run[i] == run) own.push_back(static_cast<Index>(i));
+  }
+  return {at(m.crossing_x, own), at(m.crossing_pressure, own),
+          coverage_factor(m.coverage) * at(m.crossing_x_uncertainty, own)};
+}
+
+/// Deflection of a run at any x, by a straight line between stations; NaN beside a gap.
+double deflection_at(const Measurement& m, Index run, double x) {
+  for (Index ix = 1; ix < m.x.size(); ++ix) {
+    if (m.x(ix) < x || x < m.x(ix - 1)) continue;
+    const double t = (x - m.x(ix - 1)) / (m.x(ix) - m.x(ix - 1));
+    return (1.0 - t) * m.deflection(run, ix - 1) + t * m.deflection(run, ix);
+  }
+  return std::nan("");
+}
+
+/// Least-squares line p = c0 + c1 x through the reading in the test section; nullopt if under 2
+/// points.
+std::optional<std::pair<double, double>> linear_fit(const Measurement& m, Index run) {
+  double n = 0, sx = 0, sp = 0, sxx = 0, sxp = 0;
+  const double origin = m.test_section(run, 0);
+  for (Index ix = 0; ix < m.x.size(); ++ix) {
+    const double x = m.x(ix) - origin, p = m.pressure(run, ix);
+    const bool inside = std::isgreaterequal(m.x(ix), m.test_section(run, 0)) &&
+                        std::islessequal(m.x(ix), m.test_section(run, 1));
+    if (!inside || !std::isfinite(p)) continue;
+    n += 1.0;
+    sx += x;
+    sp += p;
+    sxx += x * x;
+    sxp += x * p;
+  }
+  const double determinant = n * sxx - sx * sx;
+  if (n < 2.0 || determinant <= 0.0) return std::nullopt;
+  const double slope = (n * sxp - sx * sp) / determinant;
+  return std::pair{(sp - slope * sx) / n - slope * origin, slope};
+}
+
+void shade_test_section(PlotScript& script, const Measurement& m, Index run,
+                        const ReportUnits& units) {
+  const double start = m.test_section(run, 0), end = m.test_section(run, 1);
+  if (!std::isfinite(start) || !std::isfinite(end)) return;
+  script.set(
+      fmt::format("set object rectangle from {}, graph 0 to {}, graph 1 behind fillcolor rgb "
+                  "'#e9eef3' fillstyle solid noborder",
+                  plain(start / units.x.si), plain(end / units.x.si)));
+}
+
+void draw_linear_fit(PlotScript& script, const Measurement& m, Index run, const ReportUnits& units,
+                     const DisplayUnit& pressure) {
+  const auto fit = linear_fit(m, run);
+  if (!fit) return;
+  const Array1 x = m.test_section.row(run).transpose();
+  const Array1 p = fit->first + fit->second * x;
+  const double slope = fit->second * units.x.si / pressure.si;
+  script.draw(script.add_data({x / units.x.si, p / pressure.si}),
+              fmt::format("using 1:2 with lines dt 3 lw 2 lc rgb '{}' {}", kBlack,
+                          title(fmt::format("linear fit, {} {}/{}", number_text(slope, 3),
+                                            pressure.name, units.x.name))));
+}
+
+std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure figure) {
+  const ReportUnits units = report_units(m);
+  const DisplayUnit unit = pressure_unit(std::max(
+      largest_magnitude(row(m.pressure, run)), largest_magnitude(row(m.resistance_pressure, run))));
+  PlotScript script;
+  script.set(common_settings());
+  script.set("set key outside above center horizontal maxcols 2 width -3");
+  script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  script.set(fmt::format("set ylabel '{{/:Italic p}} ({})' textcolor rgb '{}'", unit.name, kBlue));
+  script.set(fmt::format("set y2label '{{/:Italic ζ}} ({})' textcolor rgb '{}'",
+                         units.deflection.name, kRed));
+  script.set("set ytics nomirror\nset y2tics");
+  script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  shade_test_section(script, m, run, units);
+  const Array1 x = thinned(m.x) / units.x.si;
+  script.draw(script.add_data({x, row(m.deflection, run) / units.deflection.si}),
+              fmt::format("using 1:2 axes x1y2 with lines lw 1.4 lc rgb '{}' {}", kRed,
+                          title("deflection {/:Italic ζ} (right axis)")));
+  const auto band = script.add_data(
+      {x, row(m.pressure_lower, run) / unit.si, row(m.pressure_upper, run) / unit.si});
+  script.draw(band,
+              fmt::format("using 1:2:3 with filledcurves fc rgb '{}' fs transparent solid 0.3 "
+                          "noborder {}",
+                          kBlue, title(fmt::format("{:.3g} % interval", 100.0 * m.coverage))));
+  const auto pressure = script.add_data({x, row(m.pressure, run) / unit.si});
+  script.draw(pressure, fmt::format("using 1:2 with lines lw 2 lc rgb '{}' {}", kBlue,
+                                    title("{/:Italic p}({/:Italic x}) read off the wall")));
+  script.draw(script.add_data({x, row(m.resistance_pressure, run) / unit.si}),
+              fmt::format("using 1:2 with lines dt 2 lw 2 lc rgb '{}' {}", kGrey,
+                          title("from {/:Italic QR} of the measured gap")));
+  draw_linear_fit(script, m, run, units, unit);
+  const Crossings crossings = crossings_of(m, run);
+  if (crossings.x.size() > 0) {
+    script.draw(script.add_data({crossings.x / units.x.si, crossings.pressure / unit.si,
+                                 crossings.bar / units.x.si}),
+                fmt::format("using 1:2:3 with xerrorbars pt 6 ps 0.8 lw 1.5 lc rgb '{}' {}", kBlack,
+                            title("crossings with static profiles")));
+  }
+  if (pressure.empty() && crossings.x.size() == 0) return std::nullopt;
+  script.plot();
+  figure.title = "Pressure along the channel at " + flow_rate_label(m, run, units);
+  figure.caption = fmt::format(
+      "Gauge pressure p(x) at {} read off the wall (blue) with its {:.3g} % interval; circles: "
+      "where the "
+      "flow profile crosses a static profile of known pressure. Dashed: what the hydraulic "
+      "resistance of "
+      "the measured gap gives, tied to the reading at the end of the test section; dotted: "
+      "straight line "
+      "through the reading. Red: deflection. The test section is shaded; a gap in the line is a "
+      "station "
+      "where the wall gives no answer. As fig. 3{} of Ozsun et al. (2013).",
+      flow_rate_label(m, run, units), 100.0 * m.coverage, figure.caption);
+  figure.width = 640;
+  figure.height = 500;
+  figure.script = script.text();
+  return figure;
+}
+
+}  // namespace
+
+std::optional<Figure> profiles_overlaid(const Measurement& m) {
+  const ReportUnits units = report_units(m);
+  const auto runs = runs_by_flow_rate(m);
+  if (runs.empty() || m.level_pressure.size() == 0) return std::nullopt;
+  PlotScript script;
+  script.set(common_settings());
+  script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  script.set(fmt::format("set ylabel '{{/:Italic ζ}} ({})'", units.deflection.name));
+  script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  const Array1 x = thinned(m.x) / units.x.si;
+  bool titled = false;
+  for (Index level = 0; level < m.level_pressure.size(); ++level) {
+    const auto data = script.add_data({x, row(m.static_deflection, level) / units.deflection.si});
+    if (data.empty()) continue;
+    script.draw(data, fmt::format("using 1:2 with lines lw 0.9 lc rgb '{}' {}", kPale,
+                                  titled ? "notitle" : title("static profiles")));
+    titled = true;
+  }
+  std::vector<std::pair<Index, const char*>> shown{{runs.back(), kBlue}};
+  if (runs.size() > 1) shown.emplace_back(runs.front(), kGreen);
+  for (const auto& [run, colour] : shown) {
+    script.draw(script.add_data({x, row(m.deflection, run) / units.deflection.si}),
+                fmt::format("using 1:2 with lines lw 2.6 lc rgb '{}' {}", colour,
+                            title(flow_rate_label(m, run, units))));
+    const Crossings crossings = crossings_of(m, run);
+    if (crossings.x.size() == 0) continue;
+    const Index which = run;
+    const Array1 height = crossings.x.unaryExpr(
+        [&](double place) { return deflection_at(m, which, place) / units.deflection.si; });
+    script.draw(
+        script.add_data({crossings.x / units.x.si, height}),
+        fmt::format("using 1:2 with points pt 6 ps 0.7 lw 1.4 lc rgb '{}' notitle", kBlack));
+  }
+  script.plot();
+  if (!script.has_content()) return std::nullopt;
+  return Figure{
+      "fig3a_profiles_overlaid",
+      "Flow profiles over static profiles",
+      "Deflection at the lowest and the highest flow rate (thick) over the static profiles of "
+      "known pressure (grey). Where they cross (circles), the pressure in the flow is that of the "
+      "static profile. As fig. 3(a) of Ozsun et al. (2013).",
+      640,
+      480,
+      script.text()};
+}
+
+std::optional<Figure> pressure_at_lowest_flow(const Measurement& m) {
+  const auto runs = runs_by_flow_rate(m);
+  if (runs.size() < 2) return std::nullopt;  // the only run is the highest
+  Figure figure;
+  figure.name = "fig3b_pressure_lowest_flow";
+  figure.caption = "(b)";
+  return pressure_of_run(m, runs.front(), std::move(figure));
+}
+
+std::optional<Figure> pressure_at_highest_flow(const Measurement& m) {
+  const auto runs = runs_by_flow_rate(m);
+  if (runs.empty()) return std::nullopt;
+  Figure figure;
+  figure.name = "fig3c_pressure_highest_flow";
+  figure.caption = "(c)";
+  return pressure_of_run(m, runs.back(), std::move(figure));
+}
+
+std::optional<Figure> pressure_of_all_runs(const Measurement& m) {
+  const ReportUnits units = report_units(m);
+  const auto runs = runs_by_flow_rate(m);
+  const auto named = spread(runs, 10);
+  const DisplayUnit unit = pressure_unit(largest_magnitude(m.pressure));
+  PlotScript script;
+  script.set(common_settings());
+  script.set("set key outside right center vertical");
+  script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  script.set(fmt::format("set ylabel '{{/:Italic p}} ({})'", unit.name));
+  script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  if (!runs.empty()) shade_test_section(script, m, runs.back(), units);
+  const Array1 x = thinned(m.x) / units.x.si;
+  for (std::size_t i = runs.size(); i-- > 0;) {
+    const Index run = runs[i];
+    const auto colour = ordered_colour(static_cast<Index>(i), static_cast<Index>(runs.size()));
+    const bool is_named = std::find(named.begin(), named.end(), run) != named.end();
+    script.draw(script.add_data({x, row(m.pressure_lower, run) / unit.si,
+                                 row(m.pressure_upper, run) / unit.si}),
+                fmt::format("using 1:2:3 with filledcurves fc rgb '{}' fs transparent solid 0.3 "
+                            "noborder notitle",
+                            colour));
+    script.draw(script.add_data({x, row(m.pressure, run) / unit.si}),
+                fmt::format("using 1:2 with lines lw 1.6 lc rgb '{}' {}", colour,
+                            is_named ? title(flow_rate_label(m, run, units)) : "notitle"));
+  }
+  script.plot();
+  if (!script.has_content()) return std::nullopt;
+  return Figure{
+      "pressure_all_runs",
+      "Pressure along the channel, all runs",
+      fmt::format("Gauge pressure p(x) read off the wall at every flow rate, with {:.3g} % "
+                  "intervals (bands, often thinner than the lines). The test section of the "
+                  "highest flow rate is shaded.",
+                  100.0 * m.coverage),
+      640,
+      440,
+      script.text()};
+}
+
+}  // namespace manoscope::report

@@ -1,0 +1,242 @@
+#include "manoscope/report/html_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "manoscope/core/flags.hpp"
+#include "manoscope/report/figure_data.hpp"
+#include "manoscope/report/html_text.hpp"
+#include "manoscope/report/number_text.hpp"
+
+namespace manoscope::report {
+namespace {
+
+using results::Measurement;
+
+std::string with_unit(double value, int digits, DisplayUnit (*unit_for)(double)) {
+  const DisplayUnit unit = unit_for(value);
+  return number_text(value / unit.si, digits) + " " + unit.name;
+}
+
+std::string fact(const std::string& name, const std::string& value) {
+  return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, value);
+}
+
+std::string range_text(const Array1& values, DisplayUnit (*unit_for)(double)) {
+  double low = 0.0, high = 0.0;
+  Index n = 0;
+  for (Index i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values(i))) continue;
+    low = n == 0 ? values(i) : std::min(low, values(i));
+    high = n == 0 ? values(i) : std::max(high, values(i));
+    ++n;
+  }
+  if (n == 0) return "–";
+  const DisplayUnit unit = unit_for(std::max(std::abs(low), std::abs(high)));
+  return fmt::format("{} to {} {}", number_text(low / unit.si, 4), number_text(high / unit.si, 4),
+                     unit.name);
+}
+
+std::string count(Index n, const char* one, const char* many) {
+  return fmt::format("{} {}", n, n == 1 ? one : many);
+}
+
+std::string cell(const std::string& content) { return "<td>" + content + "</td>"; }
+std::string row_head(std::string_view label) {
+  return "<th scope=\"row\">" + escape_html(label) + "</th>";
+}
+std::string column_head(const std::string& content) {
+  return "<th scope=\"col\">" + content + "</th>";
+}
+
+/// A table that scrolls by itself where the page is narrow.
+std::string table(const std::string& caption, const std::string& head, const std::string& body) {
+  return fmt::format(
+      "<div class=\"scroll\"><table><caption>{}</caption>\n<thead><tr>{}</tr></thead>\n"
+      "<tbody>\n{}</tbody></table></div>\n",
+      caption, head, body);
+}
+
+std::string verdict(double en_number) {
+  if (!std::isfinite(en_number)) return "<span class=\"none\">no verdict</span>";
+  return en_number <= 1.0 ? "<span class=\"good\">agrees</span>"
+                          : "<span class=\"bad\">disagrees</span>";
+}
+
+/// Fraction of the stations of the test section that have a pressure; NaN without stations.
+double read_fraction(const Measurement& m, Index run) {
+  Index n = 0, n_read = 0;
+  for (Index ix = 0; ix < m.x.size(); ++ix) {
+    const bool inside = std::isgreaterequal(m.x(ix), m.test_section(run, 0)) &&
+                        std::islessequal(m.x(ix), m.test_section(run, 1));
+    if (!inside) continue;
+    ++n;
+    n_read += std::isfinite(m.pressure(run, ix)) ? 1 : 0;
+  }
+  return n == 0 ? std::nan("") : static_cast<double>(n_read) / static_cast<double>(n);
+}
+
+/// The station with a pressure that lies nearest the middle of the test section; -1 if none.
+Index middle_station(const Measurement& m, Index run) {
+  const double middle = 0.5 * (m.test_section(run, 0) + m.test_section(run, 1));
+  Index best = -1;
+  for (Index ix = 0; std::isfinite(middle) && ix < m.x.size(); ++ix) {
+    if (!std::isfinite(m.pressure(run, ix))) continue;
+    if (best < 0 || std::abs(m.x(ix) - middle) < std::abs(m.x(best) - middle)) best = ix;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::string facts_list(const Measurement& m) {
+  const DisplayUnit gap = length_unit(m.channel_height);
+  std::string list = "<dl class=\"facts\">\n";
+  list +=
+      fact("Channel", fmt::format("{} long, {} wide", with_unit(m.channel_length, 4, length_unit),
+                                  with_unit(m.channel_width, 4, length_unit)));
+  list += fact(
+      "Gap 2h<sub>0</sub>",
+      fmt::format("{} {} (standard uncertainty {} {})", number_text(m.channel_height / gap.si, 5),
+                  gap.name, number_text(m.channel_height_uncertainty / gap.si, 2), gap.name));
+  list += fact("Fluid", fmt::format("viscosity {} mPa s, density {} kg/m³",
+                                    number_text(m.viscosity * 1e3, 4), number_text(m.density, 4)));
+  list += fact("Calibration",
+               fmt::format("{}, {}", count(m.level_pressure.size(), "pressure", "pressures"),
+                           range_text(m.level_pressure, pressure_unit)));
+  list += fact("Flow",
+               m.run.empty()
+                   ? std::string("no runs: calibration only")
+                   : fmt::format("{}, {}", count(static_cast<Index>(m.run.size()), "run", "runs"),
+                                 range_text(m.flow_rate, flow_rate_unit)));
+  if (m.x.size() > 1) {
+    const double spacing = (m.x(m.x.size() - 1) - m.x(0)) / static_cast<double>(m.x.size() - 1);
+    list += fact("Stations",
+                 fmt::format("{}, {} apart", m.x.size(), with_unit(spacing, 3, length_unit)));
+  }
+  list += fact("Maps", fmt::format("{}", m.map.size()));
+  return list + "</dl>\n";
+}
+
+std::string runs_table(const Measurement& m) {
+  if (m.run.empty()) return {};
+  const ReportUnits units = report_units(m);
+  const double k = coverage_factor(m.coverage);
+  const auto drop = [&](double value, double uncertainty) {
+    return number_text_with_uncertainty(value / units.drop.si, k * uncertainty / units.drop.si);
+  };
+  std::string body;
+  for (std::size_t i = 0; i < m.run.size(); ++i) {
+    const auto run = static_cast<Index>(i);
+    body += "<tr>" + row_head(m.run[i]) +
+            cell(number_text(m.flow_rate(run) / units.flow_rate.si, 4)) +
+            cell(number_text(m.reynolds(run), 3)) +
+            cell(drop(m.extracted_drop(run), m.extracted_drop_uncertainty(run))) +
+            cell(drop(m.resistance_drop(run), m.resistance_drop_uncertainty(run))) +
+            cell(number_text(m.en_number(run), 2)) + cell(verdict(m.en_number(run))) +
+            cell(number_text((m.transducer_drop(run) - m.parasitic_drop(run)) / units.drop.si, 4)) +
+            cell(number_text(m.channel_resistance_drop(run) / units.drop.si, 4)) +
+            cell(fmt::format("{} to {}", number_text(m.test_section(run, 0) / units.x.si, 4),
+                             number_text(m.test_section(run, 1) / units.x.si, 4))) +
+            cell(percent_text(read_fraction(m, run))) + "</tr>\n";
+  }
+  const std::string head =
+      column_head("Run") + column_head(fmt::format("<i>Q</i> ({})", units.flow_rate.name)) +
+      column_head("Re") + column_head(fmt::format("Δ<i>p</i><sub>e</sub> ({})", units.drop.name)) +
+      column_head(fmt::format("<i>QR</i> ({})", units.drop.name)) +
+      column_head("<i>E</i><sub>n</sub>") + column_head("<i>QR</i> and Δ<i>p</i><sub>e</sub>") +
+      column_head(fmt::format("Transducer − parasitic ({})", units.drop.name)) +
+      column_head(fmt::format("<i>QR</i>, whole channel ({})", units.drop.name)) +
+      column_head(fmt::format("Test section ({})", units.x.name)) + column_head("Read");
+  return table(
+      fmt::format(
+          "Pressure drops over the test section ± expanded uncertainty ({:.3g} %, k = {:.2f}). "
+          "Δp<sub>e</sub>: read off the wall. QR: flow rate times hydraulic resistance of the "
+          "measured gap. They agree where E<sub>n</sub> ≤ 1. Read: share of the test section's "
+          "stations where the wall gives an answer.",
+          100.0 * m.coverage, k),
+      head, body);
+}
+
+std::string budget_table(const Measurement& m) {
+  if (m.run.empty() || m.budget_source.empty()) return {};
+  const ReportUnits units = report_units(m);
+  std::string head = column_head("Run") + column_head(fmt::format("<i>x</i> ({})", units.x.name)) +
+                     column_head("<i>p</i>") + column_head("<i>u</i>(<i>p</i>)");
+  for (const std::string& source : m.budget_source) head += column_head(escape_html(source));
+  std::string body;
+  for (std::size_t i = 0; i < m.run.size(); ++i) {
+    const auto run = static_cast<Index>(i);
+    const Index ix = middle_station(m, run);
+    body += "<tr>" + row_head(m.run[i]);
+    if (ix < 0) {
+      body += fmt::format("<td colspan=\"{}\">no station of the test section was read</td></tr>\n",
+                          m.budget_source.size() + 3);
+      continue;
+    }
+    const double variance = std::pow(m.pressure_uncertainty(run, ix), 2);
+    body += cell(number_text(m.x(ix) / units.x.si, 3)) +
+            cell(with_unit(m.pressure(run, ix), 4, pressure_unit)) +
+            cell(with_unit(m.pressure_uncertainty(run, ix), 2, pressure_unit));
+    for (const Array2& source : m.pressure_variance) {
+      const double share = variance > 0.0 ? source(run, ix) / variance : std::nan("");
+      const double width = std::isfinite(share) ? 100.0 * std::min(std::max(share, 0.0), 1.0) : 0.0;
+      body += fmt::format("<td class=\"share\" style=\"--share:{:.1f}%\">{}</td>", width,
+                          escape_html(percent_text(share)));
+    }
+    body += "</tr>\n";
+  }
+  return table(
+      "Standard uncertainty u(p) of the pressure near the middle of the test section, and the "
+      "share of "
+      "each source in its square.",
+      head, body);
+}
+
+std::string maps_table(const Measurement& m) {
+  if (m.map.empty()) return {};
+  const DisplayUnit noise = length_unit(largest_magnitude(m.map_noise));
+  std::string body;
+  for (std::size_t i = 0; i < m.map.size(); ++i) {
+    const auto map = static_cast<Index>(i);
+    body += "<tr>" + row_head(m.map[i]) + cell(number_text(1e3 * m.map_tilt_x(map), 3)) +
+            cell(number_text(1e3 * m.map_tilt_z(map), 3)) +
+            cell(number_text(m.map_noise(map) / noise.si, 3)) +
+            cell(escape_html(percent_text(m.map_missing(map)))) +
+            cell(escape_html(percent_text(m.map_spikes(map)))) + "</tr>\n";
+  }
+  return table(
+      "What each map was like, seen on the rigid rim: slope of its plane along and across the "
+      "flow, standard deviation of one pixel, and pixels left out.",
+      column_head("Map") + column_head("Tilt along (µm/mm)") + column_head("Tilt across (µm/mm)") +
+          column_head(fmt::format("Noise ({})", noise.name)) + column_head("Missing") +
+          column_head("Spikes"),
+      body);
+}
+
+std::string flags_table(const Measurement& m) {
+  std::string body;
+  for (const FlagName& flag : kReadingFlags) {
+    Index n = 0;
+    for (Index i = 0; i < m.pressure_flags.size(); ++i) {
+      n += (m.pressure_flags.data()[i] & flag.bit) != 0 ? 1 : 0;
+    }
+    const double fraction =
+        m.pressure_flags.size() == 0
+            ? std::nan("")
+            : static_cast<double>(n) / static_cast<double>(m.pressure_flags.size());
+    body += "<tr>" + row_head(flag.name) + cell(fmt::format("{}", flag.bit)) +
+            fmt::format("<td class=\"words\">{}</td>", flag.meaning) +
+            cell((flag.bit & ReadingFlag::no_answer) != 0 ? "none" : "given") +
+            cell(fmt::format("{}", n)) + cell(escape_html(percent_text(fraction))) + "</tr>\n";
+  }
+  return table(
+      "Flags of the reading (bits of <code>pressure_flags</code>), counted over all stations of "
+      "all runs. A missing pressure is NaN; it is never filled in.",
+      column_head("Flag") + column_head("Bit") + column_head("Meaning") + column_head("Pressure") +
+          column_head("Stations") + column_head("Share"),
+      body);
+}
+
+}  // namespace manoscope::report

@@ -1,0 +1,99 @@
+#include "manoscope/report/number_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::report {
+namespace {
+
+const char* const kMissing = "–";
+
+DisplayUnit choose(double largest, const std::vector<DisplayUnit>& ascending) {
+  DisplayUnit chosen = ascending.front();
+  for (const DisplayUnit& unit : ascending) {
+    if (std::isgreaterequal(std::abs(largest), unit.si * (1.0 - 1e-9))) chosen = unit;
+  }
+  return chosen;
+}
+
+/// Power of ten of the leading digit once the number is rounded to `digits` digits.
+int leading_power(double value, int digits) {
+  // The decimal conversion rounds as it will be printed: 9.96 with two digits is 10, power 1.
+  const std::string text = fmt::format("{:.{}e}", std::abs(value), digits - 1);
+  return std::stoi(text.substr(text.find('e') + 1));
+}
+
+std::string fixed(double value, int decimals) {
+  if (decimals < 0) {
+    const double step = std::pow(10.0, -decimals);
+    value = std::round(value / step) * step;
+  }
+  std::string text = fmt::format("{:.{}f}", value, std::max(decimals, 0));
+  if (text.front() == '-') {
+    const bool zero = text.find_first_not_of("-0.") == std::string::npos;
+    text = (zero ? "" : "−") + text.substr(1);
+  }
+  return text;
+}
+
+}  // namespace
+
+DisplayUnit pressure_unit(double largest) {
+  return choose(largest, {{1.0, "Pa"}, {1e3, "kPa"}, {1e6, "MPa"}});
+}
+
+DisplayUnit length_unit(double largest) {
+  return choose(largest, {{1e-9, "nm"}, {1e-6, "µm"}, {1e-3, "mm"}, {1.0, "m"}});
+}
+
+DisplayUnit flow_rate_unit(double largest) {
+  constexpr double kMilliliterPerMinute = 1e-6 / 60.0;
+  return choose(largest, {{1e-6 * kMilliliterPerMinute, "nL/min"},
+                          {1e-3 * kMilliliterPerMinute, "µL/min"},
+                          {kMilliliterPerMinute, "mL/min"},
+                          {1e3 * kMilliliterPerMinute, "L/min"}});
+}
+
+double coverage_factor(double coverage) {
+  MANO_ASSERT(coverage > 0.0 && coverage < 1.0);
+  double low = 0.0, high = 40.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::erf(middle / std::numbers::sqrt2) < coverage ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::string number_text(double value, int digits) {
+  if (!std::isfinite(value)) return kMissing;
+  if (value == 0.0) return "0";
+  const int power = leading_power(value, digits);
+  if (power >= 7 || power < -4) {
+    return fmt::format("{}{:.{}e}", value < 0.0 ? "−" : "", std::abs(value), digits - 1);
+  }
+  return fixed(value, digits - 1 - power);
+}
+
+std::string number_text_with_uncertainty(double value, double uncertainty) {
+  if (!std::isfinite(value)) return kMissing;
+  if (!std::isfinite(uncertainty) || uncertainty <= 0.0) return number_text(value, 4);
+  const int decimals = 1 - leading_power(uncertainty, 2);
+  if (decimals > 12) return number_text(value, 4);  // far below any digit that means something
+  return fixed(value, decimals) + " ± " + fixed(uncertainty, decimals);
+}
+
+std::string percent_text(double fraction) {
+  if (!std::isfinite(fraction)) return kMissing;
+  if (fraction == 0.0) return "0 %";
+  if (std::abs(fraction) < 1e-4) return "< 0.01 %";
+  const int power = leading_power(100.0 * fraction, 2);
+  return fixed(100.0 * fraction, std::clamp(1 - power, 0, 2)) + " %";
+}
+
+}  // namespace manoscope::report

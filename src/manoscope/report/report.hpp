@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "manoscope/results/measurement.hpp"
+#include "manoscope/results/write.hpp"
+
+namespace manoscope::report {
+
+struct ReportOptions {
+  bool pdf = false;  ///< figures as PDF too
+
+  template <class Visitor>
+  void describe(Visitor&& visit) {
+    visit("pdf", pdf, "write each figure as PDF too");
+  }
+};
+
+/// The figures (figures/*.svg, *.pdf) and report.html of a measurement, ready for write_result().
+///
+/// Figures are drawn by gnuplot, started as a separate process; where it is missing the report says
+/// so and holds the tables only.
+std::vector<results::ExtraFile> make_report(const results::Measurement& measurement,
+                                            const ReportOptions& options = {});
+
+}  // namespace manoscope::report

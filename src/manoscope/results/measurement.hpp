@@ -1,0 +1,77 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "manoscope/core/arrays.hpp"
+
+namespace manoscope::results {
+
+/// Everything a measurement leaves behind, as the result file holds it: plain SI arrays whose names
+/// are those of the file. The schema (schema.hpp) lists name, unit, dimensions and meaning of each.
+///
+/// Dimensions: level (n_l) distinct calibration pressures, ascending; x (n_x) stations, ascending;
+/// run (n_r) flow runs in the order of the experiment; map (n_m) every map that was read;
+/// crossing (n_c) crossing points of all runs.
+/// A number that does not exist (no transducer, no answer of the wall) is NaN.
+struct Measurement {
+  // Global attributes.
+  std::string title, source, history;
+  std::string experiment;             ///< the whole experiment.toml
+  std::string inputs;                 ///< one "name  sha256" a line
+  std::string settings;               ///< one "name = value" a line: every option in force
+  std::vector<std::string> warnings;  ///< doubts worth a person's time, in words
+
+  // Scalars.
+  double channel_length = 0.0, channel_width = 0.0, channel_height = 0.0;  ///< m
+  double channel_height_uncertainty = 0.0;                                 ///< m, standard
+  double viscosity = 0.0;                                                  ///< Pa s
+  double density = 0.0;                                                    ///< kg m-3
+  double coverage = 0.95;  ///< probability content of the intervals
+
+  Array1 x;  ///< (n_x) m
+
+  // Calibration.
+  Array1 level_pressure;                 ///< (n_l) Pa, as applied (mean of repeats)
+  Array1 level_pressure_uncertainty;     ///< (n_l) Pa, standard
+  Array2 static_deflection;              ///< (n_l, n_x) m
+  Array2 static_deflection_uncertainty;  ///< (n_l, n_x) m
+  Array1 crest_deflection;               ///< (n_l) m, zeta_p: mid-channel, on the centre line
+  Array1 crest_deflection_uncertainty;   ///< (n_l) m
+
+  // Reading.
+  std::vector<std::string> run;               ///< (n_r)
+  Array1 flow_rate;                           ///< (n_r) m3 s-1
+  Array2 deflection, deflection_uncertainty;  ///< (n_r, n_x) m
+  Array2 pressure, pressure_uncertainty;      ///< (n_r, n_x) Pa
+  Array2 pressure_lower, pressure_upper;      ///< (n_r, n_x) Pa
+  std::vector<Matrix> pressure_covariance;    ///< n_r of (n_x, n_x) Pa2
+  Flags2 pressure_flags;                      ///< (n_r, n_x) bits of ReadingFlag
+  Array2 test_section;                        ///< (n_r, 2) m: x_start, x_end
+  /// Budget: variance of p(x) by source; a name for each and one (n_r, n_x) array of Pa2.
+  std::vector<std::string> budget_source;
+  std::vector<Array2> pressure_variance;
+
+  // The paper's own method: crossings of the flow profile with the static profiles.
+  std::vector<int> crossing_run;  ///< (n_c) index into run
+  Array1 crossing_x;              ///< (n_c) m
+  Array1 crossing_x_uncertainty;  ///< (n_c) m
+  Array1 crossing_pressure;       ///< (n_c) Pa
+
+  // Does the flow agree.
+  Array1 extracted_drop, extracted_drop_uncertainty;    ///< (n_r) Pa
+  Array1 resistance_drop, resistance_drop_uncertainty;  ///< (n_r) Pa, over the test section
+  Array1 channel_resistance_drop;                       ///< (n_r) Pa, Q R over the whole channel
+  Array2 resistance_pressure;              ///< (n_r, n_x) Pa: p(x_end) + Q int_x^x_end r
+  Array1 reynolds;                         ///< (n_r)
+  Array1 transducer_drop, parasitic_drop;  ///< (n_r) Pa
+  Array1 en_number;                        ///< (n_r) |dp_e - QR| / U of the difference
+
+  // What each map was like.
+  std::vector<std::string> map;    ///< (n_m) file names
+  Array1 map_tilt_x, map_tilt_z;   ///< (n_m) slope of the rim's plane, m/m
+  Array1 map_noise;                ///< (n_m) m, standard deviation of one pixel on the rim
+  Array1 map_missing, map_spikes;  ///< (n_m) fraction of the pixels
+};
+
+}  // namespace manoscope::results

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "manoscope/results/measurement.hpp"
+
+namespace manoscope::results {
+
+/// One more file to be published together with the result, e.g. {"report.html", bytes}.
+struct ExtraFile {
+  std::filesystem::path name;  ///< relative to the result folder
+  std::string bytes;
+};
+
+/// Writes result.nc, pressure.csv, drops.csv and the extra files to `folder`, all or nothing.
+///
+/// Everything is first written and synced in a hidden folder inside `folder`; then the old result
+/// is withdrawn (result.nc first) and the new files are renamed into place, result.nc last. A
+/// killed run therefore leaves the old result or none, and never half a file. Other files in
+/// `folder` stay.
+/// @throws InputError naming the file if the folder cannot be made or written (permissions, full
+/// disk).
+void write_result(const std::filesystem::path& folder, const Measurement& measurement,
+                  const std::vector<ExtraFile>& extra_files);
+
+/// Reads what write_result() left.
+/// @param folder_or_file  the result folder or its result.nc.
+/// @throws InputError if it is missing, not a NetCDF file, or lacks a variable of the schema.
+Measurement read_result(const std::filesystem::path& folder_or_file);
+
+}  // namespace manoscope::results

@@ -1,0 +1,160 @@
+#include "manoscope/twin/experiment_files.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/io/csv_table.hpp"
+#include "manoscope/io/reader.hpp"
+
+namespace manoscope::twin {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ExperimentFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              (std::string("twin_test_") +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    scenario_.camera.n_along = 64;
+    scenario_.camera.n_across = 32;
+    scenario_.solver.steps = 400;
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    fs::permissions(folder_, fs::perms::owner_all, ignored);
+    fs::remove_all(folder_);
+  }
+
+  static std::string content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  fs::path folder_;
+  Scenario scenario_ = small_s1();
+};
+
+TEST_F(ExperimentFolder, HoldsEveryFileThatItsListsName) {
+  const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
+  write_experiment(folder_, experiment);
+  EXPECT_EQ(content(folder_ / "experiment.toml"), experiment.experiment_toml);
+  const io::CsvTable levels = io::read_csv_table(folder_ / "hydrostatic.csv");
+  ASSERT_EQ(levels.rows.size(), 17u);
+  EXPECT_EQ(levels.columns[1].unit, "Pa");
+  const io::CsvTable runs = io::read_csv_table(folder_ / "flow.csv");
+  ASSERT_EQ(runs.rows.size(), 4u);
+  for (const io::CsvTable* table : {&levels, &runs}) {
+    for (const io::CsvRow& row : table->rows) EXPECT_TRUE(fs::exists(folder_ / row.cells[0]));
+  }
+  const Truth truth = read_truth(folder_);
+  ASSERT_EQ(truth.runs.size(), 4u);
+  EXPECT_EQ(truth.runs[3].run, runs.rows[3].cells[3]);
+  const io::CsvTable scalars = io::read_csv_table(folder_ / "truth/truth_scalars.csv");
+  EXPECT_EQ(scalars.rows.size(), 4u);
+  EXPECT_EQ(io::read_csv_table(folder_ / "truth/truth_levels.csv").rows.size(), 17u);
+  EXPECT_EQ(io::read_csv_table(folder_ / "truth/truth_static.csv").columns.size(), 18u);
+}
+
+TEST_F(ExperimentFolder, MapsReadBackAsRecorded) {
+  const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
+  write_experiment(folder_, experiment);
+  for (const NamedMap& map : experiment.maps) {
+    const HeightMap read = io::read_height_map(folder_ / map.name);
+    EXPECT_EQ(read.grid().nx, map.map.grid().nx);
+    EXPECT_NEAR(read.grid().pitch_x / map.map.grid().pitch_x, 1.0, 1e-12);
+    EXPECT_TRUE((read.flags() == map.map.flags()).all());
+    // 32-bit floats: 2^-24 of heights up to 80 um is 5 pm.
+    EXPECT_LT(((map.map.flags() == 0).cast<double>() * (read.height() - map.map.height()))
+                  .abs()
+                  .maxCoeff(),
+              5e-12);
+  }
+}
+
+TEST_F(ExperimentFolder, HasTheSameBytesForTheSameSeedOnOneOrTwoThreads) {
+  write_experiment(folder_ / "one", make_virtual_experiment(scenario_, 9, 1));
+  write_experiment(folder_ / "two", make_virtual_experiment(scenario_, 9, 2));
+  int n_files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "one")) {
+    if (!entry.is_regular_file()) continue;
+    const auto other = folder_ / "two" / fs::relative(entry.path(), folder_ / "one");
+    EXPECT_EQ(content(entry.path()), content(other)) << other;
+    ++n_files;
+  }
+  EXPECT_EQ(n_files, 21 + 3 + 4);
+}
+
+TEST_F(ExperimentFolder, IsNotReplacedUnlessAsked) {
+  write_experiment(folder_, make_virtual_experiment(scenario_, 1));
+  const std::string before = content(folder_ / "h03.gsf");
+  const VirtualExperiment other = make_virtual_experiment(scenario_, 2);
+  EXPECT_THROW(write_experiment(folder_, other), InputError);
+  EXPECT_EQ(content(folder_ / "h03.gsf"), before);
+  write_experiment(folder_, other, true);
+  EXPECT_NE(content(folder_ / "h03.gsf"), before);
+  EXPECT_EQ(content(folder_ / "experiment.toml"), other.experiment_toml);
+}
+
+TEST_F(ExperimentFolder, ThatCannotBeMadeIsAClearError) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "taken") << "a file";
+  const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
+  EXPECT_THROW(write_experiment(folder_ / "taken", experiment), InputError);
+  if (geteuid() == 0) return;  // root may write anywhere
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THROW(write_experiment(folder_ / "new", experiment), InputError);
+}
+
+TEST(ExperimentToml, StatesEveryValueWithItsUnit) {
+  Scenario scenario = small_s1();
+  scenario.name = "a \"quoted\" name";
+  scenario.camera.flow = FlowDirection::minus_rows;
+  scenario.camera.outward = Outward::minus_height;
+  scenario.camera.rotation = 0.5 * deg;
+  scenario.gauge.gain_uncertainty = 0.002;
+  scenario.gauge.zero_uncertainty = 5.0 * Pa;
+  const std::string text = experiment_toml(scenario, 174.48 * um);
+  for (const char* line :
+       {"manoscope = 1\n",
+        "name = \"a \\\"quoted\\\" name\"\n",
+        "length = \"15.5 mm\"\n",
+        "width = \"1.7 mm\"\n",
+        "height = \"174.48 um\"\n",
+        "height_uncertainty = \"0.5 um\"\n",
+        "origin = [\"0.4 mm\", \"15.9 mm\"]\n",
+        "flow = \"-rows\"\n",
+        "rotation = \"0.5 deg\"\n",
+        "outward = \"-height\"\n",
+        "thickness = \"0.2 um\"\n",
+        "youngs_modulus = \"250 GPa\"\n",
+        "poisson_ratio = 0.23\n",
+        "prestress = \"10 MPa\"\n",
+        "viscosity = \"1 mPa s\"\n",
+        "density = \"998 kg/m3\"\n",
+        "height_noise = \"20 nm\"\n",
+        "pressure_noise = \"10 Pa\"\n",
+        "pressure_gain_uncertainty = 0.002\n",
+        "pressure_zero_uncertainty = \"5 Pa\"\n",
+        "list = \"hydrostatic.csv\"\n",
+        "list = \"flow.csv\"\n",
+        "inlet = {length = \"2 mm\", width = \"1.7 mm\", height = \"250 um\"}\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
+  }
+}
+
+TEST(RunLabel, IsTheFlowRateInMillilitresAMinute) {
+  EXPECT_EQ(run_label(70.0 * mL_per_min), "Q70");
+  EXPECT_EQ(run_label(12.5 * mL_per_min), "Q12.5");
+}
+
+}  // namespace
+}  // namespace manoscope::twin

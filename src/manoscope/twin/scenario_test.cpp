@@ -1,0 +1,60 @@
+#include "manoscope/twin/scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::twin {
+namespace {
+
+TEST(SmallS1, IsBowedAtRestAndStretchedAtFiftyKilopascal) {
+  const Scenario scenario = small_s1();
+  EXPECT_NO_THROW(scenario.validate());
+  const wall::TaperedMembrane wall = scenario.make_wall();
+  const double middle = 0.5 * scenario.channel.length.si();
+  // An independent plate model of the paper's S1 gives -11.4 um and 47.4 um.
+  EXPECT_NEAR(wall.deflection(middle, 0.0), -11.4e-6, 1e-6);
+  EXPECT_NEAR(wall.deflection(middle, 50e3), 47.4e-6, 0.5e-6);
+}
+
+TEST(SmallS1, CoversItsFlowRunsWithItsLevels) {
+  const Scenario scenario = small_s1();
+  for (const FlowRate flow_rate : scenario.flow_rates) {
+    const CoupledFlow flow =
+        solve_coupled(scenario.channel, scenario.fluid, scenario.make_wall(), flow_rate,
+                      scenario.outlet.pressure(flow_rate), scenario.solver);
+    EXPECT_LT(flow.inlet(), scenario.levels.back());
+    EXPECT_GT(flow.outlet(), scenario.levels.front());
+  }
+}
+
+TEST(Scenario, RefusesValuesOutOfRangeByName) {
+  const auto refused = [](auto change, const std::string& part) {
+    Scenario scenario = small_s1();
+    change(scenario);
+    try {
+      scenario.validate();
+      ADD_FAILURE() << part << " passed";
+    } catch (const InputError& error) {
+      EXPECT_NE(error.found().find(part), std::string::npos) << error.what();
+    }
+  };
+  refused([](Scenario& s) { s.membrane.thickness = -0.2 * um; }, "thickness");
+  refused([](Scenario& s) { s.channel.height = Length{}; }, "height");
+  refused([](Scenario& s) { s.membrane.width = 1.6 * mm; }, "1.6 mm wide");
+  refused([](Scenario& s) { s.levels.clear(); }, "no pressure level");
+  refused([](Scenario& s) { s.levels.push_back(-5.0 * Pa); }, "-5 Pa");
+  refused([](Scenario& s) { s.flow_rates.push_back(5.0 * mL_per_min); }, "twice");
+  refused([](Scenario& s) { s.flow_rates.push_back(FlowRate{}); }, "0 mL/min");
+  refused([](Scenario& s) { s.fluid.viscosity = Viscosity{}; }, "viscosity");
+  refused([](Scenario& s) { s.gauge.noise = -1.0 * Pa; }, "gauge noise");
+  refused([](Scenario& s) { s.gauge.gain_uncertainty = 0.5; }, "gain");
+  refused([](Scenario& s) { s.camera.spikes = 2.0; }, "spikes");
+  refused([](Scenario& s) { s.solver.steps = 1; }, "steps");
+  refused([](Scenario& s) { s.name.clear(); }, "no name");
+}
+
+}  // namespace
+}  // namespace manoscope::twin

@@ -1,0 +1,172 @@
+#include "manoscope/twin/virtual_experiment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/flow/channel_resistance.hpp"
+
+namespace manoscope::twin {
+namespace {
+
+/// Few pixels and steps, for tests that look at other things.
+Scenario tiny() {
+  Scenario scenario = small_s1();
+  scenario.camera.n_along = 96;
+  scenario.camera.n_across = 48;
+  scenario.solver.steps = 400;
+  return scenario;
+}
+
+bool same(const VirtualExperiment& a, const VirtualExperiment& b) {
+  bool equal = a.experiment_toml == b.experiment_toml && a.hydrostatic_csv == b.hydrostatic_csv &&
+               a.flow_csv == b.flow_csv && truth_csv(a.truth) == truth_csv(b.truth) &&
+               a.maps.size() == b.maps.size();
+  for (std::size_t i = 0; equal && i < a.maps.size(); ++i) {
+    equal = a.maps[i].name == b.maps[i].name &&
+            (a.maps[i].map.height() == b.maps[i].map.height()).all() &&
+            (a.maps[i].map.flags() == b.maps[i].map.flags()).all();
+  }
+  return equal;
+}
+
+TEST(VirtualExperiment, IsTheSameForTheSameSeedOnOneOrTwoThreads) {
+  const VirtualExperiment one = make_virtual_experiment(tiny(), 7, 1);
+  EXPECT_TRUE(same(one, make_virtual_experiment(tiny(), 7, 2)));
+  EXPECT_FALSE(same(one, make_virtual_experiment(tiny(), 8, 2)));
+}
+
+TEST(VirtualExperiment, HoldsAMapForEachLevelAndRun) {
+  const Scenario scenario = tiny();
+  const VirtualExperiment experiment = make_virtual_experiment(scenario, 1);
+  ASSERT_EQ(experiment.maps.size(), 21u);
+  EXPECT_EQ(experiment.maps.front().name, "h00.gsf");
+  EXPECT_EQ(experiment.maps.back().name, "f03.gsf");
+  EXPECT_EQ(experiment.levels.size(), 17u);
+  ASSERT_EQ(experiment.truth.runs.size(), 4u);
+  EXPECT_EQ(experiment.truth.runs.back().run, "Q70");
+  EXPECT_EQ(experiment.truth.x.size(), experiment.truth.runs[0].pressure.size());
+}
+
+TEST(VirtualExperiment, TruthAgreesWithItsMaps) {
+  Scenario scenario = tiny();
+  scenario.camera.n_across = 250;  // exactly 100 um of rim and 1.7 mm in steps of 10 um
+  scenario.camera.n_along = 407;
+  InterferometerOptions& camera = scenario.camera;
+  camera.noise = camera.piston = camera.shift = Length{};
+  camera.tilt = Angle{};
+  camera.dropouts = camera.blobs = camera.spikes = 0.0;
+  const VirtualExperiment experiment = make_virtual_experiment(scenario, 1);
+  const auto check = [&](const HeightMap& map, const Array1& zeta) {
+    const double pitch = map.grid().pitch_y.si();
+    Index first = 0;
+    while ((static_cast<double>(first) + 0.5) * map.grid().pitch_x.si() <= camera.rim.si()) ++first;
+    for (Index i = 0; i < zeta.size(); ++i) {
+      const double average = map.height().col(first + i).sum() * pitch / 1.7e-3;
+      // Midpoint rule over whole pixels of a parabola: relative error (pitch/w)^2/2.
+      EXPECT_NEAR(average, zeta(i), 0.51 * std::pow(pitch / 1.7e-3, 2) * std::abs(zeta(i)) + 1e-15);
+    }
+  };
+  for (std::size_t i = 0; i < 17; ++i) {
+    check(experiment.maps[i].map, experiment.levels[i].deflection);
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    check(experiment.maps[17 + i].map, experiment.truth.runs[i].deflection);
+  }
+}
+
+TEST(VirtualExperiment, LabelsScatterByTheGaugeAndTheVentedLevelIsExact) {
+  Scenario scenario = tiny();
+  scenario.camera.n_along = scenario.camera.n_across = 8;
+  scenario.flow_rates.clear();
+  double sum = 0.0, squares = 0.0;
+  int n = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    const VirtualExperiment experiment = make_virtual_experiment(scenario, seed, 1);
+    EXPECT_EQ(experiment.levels.front().label.si(), 0.0);
+    for (std::size_t i = 1; i < experiment.levels.size(); ++i) {
+      const double error = (experiment.levels[i].label - experiment.levels[i].pressure).si();
+      sum += error;
+      squares += error * error;
+      ++n;
+    }
+  }
+  // Five standard errors of the mean and the variance of n normal numbers of 10 Pa.
+  EXPECT_NEAR(sum / n, 0.0, 5.0 * 10.0 / std::sqrt(n));
+  EXPECT_NEAR(squares / n / 100.0, 1.0, 5.0 * std::sqrt(2.0 / n));
+}
+
+TEST(VirtualExperiment, GaugeGainAndZeroAreCommonToAllLevels) {
+  Scenario scenario = tiny();
+  scenario.camera.n_along = scenario.camera.n_across = 8;
+  scenario.flow_rates.clear();
+  scenario.gauge.noise = Pressure{};
+  scenario.gauge.gain_uncertainty = 0.01;
+  scenario.gauge.zero_uncertainty = 5.0 * Pa;
+  const VirtualExperiment experiment = make_virtual_experiment(scenario, 3);
+  const LevelTruth& low = experiment.levels[1];
+  const LevelTruth& high = experiment.levels.back();
+  const double gain = (high.label - low.label) / (high.pressure - low.pressure);
+  const double zero = low.label.si() - gain * low.pressure.si();
+  EXPECT_NE(gain, 1.0);
+  EXPECT_NE(zero, 0.0);
+  for (std::size_t i = 1; i < experiment.levels.size(); ++i) {
+    const LevelTruth& level = experiment.levels[i];
+    EXPECT_NEAR(level.label.si(), gain * level.pressure.si() + zero, 1e-9);  // round-off of 50 kPa
+  }
+  EXPECT_EQ(experiment.levels.front().label.si(), 0.0);
+}
+
+TEST(VirtualExperiment, ScalarsAreThoseOfTheirRuns) {
+  Scenario scenario = tiny();
+  scenario.gauge.transducer_noise = Pressure{};
+  const VirtualExperiment experiment = make_virtual_experiment(scenario, 1);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const RunScalars& run = experiment.scalars[i];
+    const RunTruth& truth = experiment.truth.runs[i];
+    EXPECT_EQ(run.outlet.si(), 285.0 + 3.1 * run.flow_rate.in(mL_per_min));
+    EXPECT_EQ(run.maximum.si(), run.inlet.si());
+    EXPECT_GT(run.inlet.si(), truth.pressure(0));
+    const double parasitic =
+        2.0 *
+        flow::passage_drop(scenario.fluid.viscosity, run.flow_rate, *scenario.inlet_passage).si();
+    EXPECT_NEAR(run.transducer_reading.si(), (run.inlet - run.outlet).si() + parasitic, 1e-9);
+    EXPECT_GE(run.largest_deflection.si(), truth.deflection.maxCoeff() * (1.0 - 1e-9));
+    // Q R over the pixels of the truth, second order in 170 um pixels with end layers of 0.54 mm.
+    const double resistance =
+        flow::resistance_drop(scenario.channel, scenario.fluid.viscosity, run.flow_rate,
+                              experiment.truth.x, truth.deflection, Length{},
+                              scenario.channel.length, flow::DuctFormula::series)
+            .drop.si();
+    EXPECT_NEAR(resistance / run.compliant_drop().si(), 1.0, 3e-3);
+    EXPECT_NEAR(run.reynolds,
+                flow::channel_reynolds(scenario.channel, scenario.fluid, run.flow_rate,
+                                       experiment.truth.x, truth.deflection),
+                1e-3 * run.reynolds);
+  }
+}
+
+TEST(VirtualExperiment, StopsWhenAskedAndTellsItsProgress) {
+  std::atomic<int> n_reports{0};
+  Monitor monitor;
+  monitor.progress = [&](std::string_view, double fraction) {
+    ++n_reports;
+    EXPECT_LE(fraction, 1.0);
+  };
+  make_virtual_experiment(tiny(), 1, 2, monitor);
+  EXPECT_EQ(n_reports, 21);
+  monitor.stop_requested = [] { return true; };
+  EXPECT_THROW(make_virtual_experiment(tiny(), 1, 2, monitor), Interrupted);
+}
+
+TEST(VirtualExperiment, RefusesAChannelThatCloses) {
+  Scenario scenario = tiny();
+  scenario.channel.height = 8.0 * um;
+  scenario.flow_rates = {0.01 * mL_per_min};
+  EXPECT_THROW(make_virtual_experiment(scenario, 1), InputError);
+}
+
+}  // namespace
+}  // namespace manoscope::twin
