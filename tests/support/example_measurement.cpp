@@ -143,6 +143,13 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   m.flow_rate(run) = Q;
   m.test_section.row(run) << kStart, kEnd;
 
+  const auto at = [&](double x, const Array1& values) {
+    Index nearest = 0;
+    (m.x - x).abs().minCoeff(&nearest);
+    return values(nearest);
+  };
+  const double end_pressure = at(kEnd, flow.pressure);
+  const double end_resistance = at(kEnd, flow.resistance_from_inlet);
   const double tilt = noise.normal(), label = noise.normal();
   Array1 tilt_effect(n_x), label_effect(n_x);
   Matrix covariance(n_x, n_x);
@@ -160,7 +167,7 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
     m.pressure_flags(run, ix) = flags;
     if ((flags & ReadingFlag::no_data) != 0) m.deflection(run, ix) = kNan;
     m.resistance_pressure(run, ix) =
-        0.98 * Q * (flow.resistance_from_inlet(n_x - 1) - flow.resistance_from_inlet(ix));
+        end_pressure + 0.98 * Q * (end_resistance - flow.resistance_from_inlet(ix));
     if ((flags & ReadingFlag::no_answer) != 0) continue;
     double total = 0.0;
     for (std::size_t source = 0; source < variance.size(); ++source) {
@@ -185,11 +192,6 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   }
   m.pressure_covariance.push_back(covariance);
 
-  const auto at = [&](double x, const Array1& values) {
-    Index nearest = 0;
-    (m.x - x).abs().minCoeff(&nearest);
-    return values(nearest);
-  };
   const double scale = 1.0 + 0.004 * noise.normal();
   m.extracted_drop(run) =
       at(kStart, flow.pressure) - at(kEnd, flow.pressure) + 12.0 * noise.normal();

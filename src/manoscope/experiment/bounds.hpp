@@ -54,6 +54,7 @@ inline constexpr Bounds kViscosity{
     "A dynamic viscosity is positive (water 1 mPa s, air 18 uPa s): check the unit"};
 inline constexpr Bounds kDensity{0.0, 3e4, true,
                                  "A density is positive and below that of osmium (22 590 kg/m3)"};
+inline constexpr Bounds kPixelPitch{0.0, 1e-2, true, "A pixel is between 0 and 1 cm wide"};
 inline constexpr Bounds kHeightNoise{0.0, 1e-3, false,
                                      "A standard deviation is zero or positive, here at most 1 mm"};
 inline constexpr Bounds kPressureUncertainty{

@@ -106,6 +106,9 @@ InstrumentSection read_instrument(TableReader& table) {
       table.number("pressure_gain_uncertainty", bounds::kGainUncertainty, "0.002");
   instrument.pressure_zero_uncertainty =
       table.quantity<Pressure>("pressure_zero_uncertainty", bounds::kPressureUncertainty);
+  instrument.pixel_pitch = table.pair<Length>("pixel_pitch", bounds::kPixelPitch);
+  instrument.height_unit = table.text("height_unit").value_or("");
+  instrument.channel = table.text("channel").value_or("");
   if (const auto reference = table.text("reference")) instrument.reference = *reference;
   table.finish();
   return instrument;

@@ -122,7 +122,8 @@ const Channel& height_channel(const std::vector<Channel>& channels, const ReadOp
   }
   if (unit_missing) {
     throw InputError(where, "does not say in which unit its heights are",
-                     "Add it, e.g. --height-unit nm");
+                     "Add it, e.g. --height-unit nm, or instrument.height_unit = \"nm\" in the experiment "
+                     "file");
   }
   throw InputError(where,
                    fmt::format("has no heights: its channels are {}", channel_list(channels)),
@@ -184,9 +185,11 @@ HeightMap read_height_map(const std::filesystem::path& path, const ReadOptions& 
   if (grid.pitch_x <= Length{} || grid.pitch_y <= Length{}) {
     const bool both = grid.pitch_x <= Length{} && grid.pitch_y <= Length{};
     throw InputError(where, "has no lateral scale",
-                     both ? "Add the size of a pixel: --pitch-x 1.5um --pitch-y 1.5um"
-                          : fmt::format("Add the size of a pixel: --pitch-{} 1.5um",
-                                        grid.pitch_x <= Length{} ? "x" : "y"));
+                     fmt::format("Add the size of a pixel: {}, or instrument.pixel_pitch = "
+                                 "[\"1.5 um\", \"1.5 um\"] in the experiment file",
+                                 both                         ? "--pitch-x 1.5um --pitch-y 1.5um"
+                                 : grid.pitch_x <= Length{} ? "--pitch-x 1.5um"
+                                                              : "--pitch-y 1.5um"));
   }
   bool any = false;
   for (Index i = 0; i < channel.values.size() && !any; ++i) {

@@ -12,7 +12,8 @@ namespace manoscope::maps {
 /// neither the slope of a bulge nor the kink at its clamped edge counts, nor a spike next door. A
 /// pixel is a spike if its step exceeds both `threshold` times the noise and `threshold` / 1.3
 /// times the upper decile of the steps of the 7 x 7 pixels around it, so that a curved wall on a
-/// coarse camera stays unflagged. Two spikes side by side show half their size; patches wider than
+/// coarse camera stays unflagged. Without noise (well below 20 nm) a pixel at a clamped corner may
+/// still be flagged. Two spikes side by side show half their size; patches wider than
 /// two pixels are not found, nor pixels with fewer than two good neighbours along either axis.
 /// @param noise      standard deviation of one pixel, > 0.
 /// @param threshold  about 6: one false alarm in 10^9 normal pixels or fewer.

@@ -56,6 +56,8 @@ TEST(MeasureNoise, FindsTheReachOfBlurredNoise) {
     const PixelNoise noise = measure_noise(map, whole(map));
     // One map: each rho has an error of sqrt(sum rho^2 / n) = 1.7 %; 2 sum over the lags of the
     // kernel and as many stray ones beyond it, which share their error: 0.27 and 0.13. 4 of these.
+    // A bound for these seeds: a long run of stray lags, always upwards, exceeds it now and then
+    // (5 was found as 5.05 +- 0.2 over 200 other maps, but once as 6.6).
     EXPECT_NEAR(noise.length_x, 5.0, 4.0 * 0.27);
     EXPECT_NEAR(noise.length_z, 3.0, 4.0 * 0.13);
     sum_x += noise.length_x;

@@ -226,16 +226,39 @@ void place_on(const Rectangle& rectangle, const AxisView& view, ChannelFrame& fr
   frame.origin_y = Length::from_si(centre_y - dy);
 }
 
+/// The frame of a place that is given whole, if the channel fits in the map on one side only.
+std::optional<ChannelFrame> only_fit(const KnownPlace& known, const CameraGrid& grid) {
+  ChannelFrame frame;
+  frame.length = known.length;
+  frame.width = known.width;
+  frame.origin_x = (*known.origin)[0];
+  frame.origin_y = (*known.origin)[1];
+  frame.flow = *known.flow;
+  frame.rotation = known.rotation.value_or(Angle{});
+  frame.outward = *known.outward;
+  ChannelFrame reversed_side = frame;
+  reversed_side.across_reversed = true;
+  const bool forward_fits = inside(grid, frame), reversed_fits = inside(grid, reversed_side);
+  if (forward_fits == reversed_fits) return std::nullopt;
+  return forward_fits ? frame : reversed_side;
+}
+
 }  // namespace
 
 FoundPlace find_place(const RegionMaps& maps, const KnownPlace& known, const std::string& name) {
   MANO_ASSERT(maps.low != nullptr && maps.high != nullptr);
-  const Response response = wall_response(*maps.low, *maps.high, name);
   FoundPlace found;
   found.length_misfit = found.width_misfit = kNan;
   ChannelFrame& frame = found.frame;
   frame.length = known.length;
   frame.width = known.width;
+  if (known.complete()) {
+    if (const auto given = only_fit(known, maps.low->grid())) {
+      frame = *given;
+      return found;
+    }
+  }
+  const Response response = wall_response(*maps.low, *maps.high, name);
 
   if (!known.complete() && !(response.top > 5.0 * response.sigma)) {
     throw InputError(name,

@@ -18,7 +18,9 @@ struct KnownPlace {
   std::optional<Angle> rotation;
   std::optional<Outward> outward;
 
-  bool complete() const { return origin && flow && rotation && outward; }
+  /// Nothing but the side across is left to settle: without an origin the rotation is found, with one
+  /// it is 0 unless given.
+  bool complete() const { return origin && flow && outward; }
 };
 
 /// The wall's answer to pressure, pixel by pixel, and where the channel was found in it.

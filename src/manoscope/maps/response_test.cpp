@@ -45,12 +45,32 @@ TEST(WallResponse, IsWhatTheWallDidWhateverEachMapsTilt) {
       }
       const auto at = test_support::channel_from_camera(
           frame, (static_cast<double>(ix) + 0.5) * 60e-6, (static_cast<double>(iy) + 0.5) * 50e-6);
-      // 5.5 sigma of the difference, for 12000 pixels, and 1 % for the plane.
-      EXPECT_NEAR(response.height(iy, ix), moved(at.x, at.z), 5.5 * 28.3e-9 * 1.01);
+      // 5.5 sigma of the difference, for 12000 pixels, and 1 % for the plane; beside a dropout the
+      // cure for spikes may take the height of the next pixel in the row.
+      const bool alone =
+          ix > 0 && ix < 199 && (response.good(iy, ix - 1) == 0 || response.good(iy, ix + 1) == 0);
+      const double rise = std::max(std::abs(moved(at.x + 60e-6, at.z) - moved(at.x, at.z)),
+                                   std::abs(moved(at.x - 60e-6, at.z) - moved(at.x, at.z)));
+      EXPECT_NEAR(response.height(iy, ix), moved(at.x, at.z),
+                  5.5 * 28.3e-9 * 1.01 + (alone ? rise : 0.0));
     }
   }
   EXPECT_NEAR(static_cast<double>(bad) / 12000.0, 1.0 - 0.98 * 0.98, 4.0 * 0.0018);
   EXPECT_NEAR(response.top, 10e-6, 0.1e-6);  // 0.5 % of all pixels lie within 1 % of the crest
+}
+
+TEST(WallResponse, CutsLoneSpikesDownToTheirNeighbours) {
+  Array2 height = Array2::Zero(60, 200);
+  height(30, 100) = 1e-5;
+  height(30, 104) = -1e-5;
+  height.block(20, 150, 3, 3).setConstant(2e-6);  // no lone spike: it stays
+  const CameraGrid camera{200, 60, 60.0 * um, 50.0 * um};
+  const Response response =
+      wall_response({camera, Array2::Zero(60, 200)}, {camera, height}, "experiment");
+  EXPECT_EQ(response.height(30, 100), 0.0);
+  EXPECT_EQ(response.height(30, 104), 0.0);
+  EXPECT_EQ(response.height(21, 151), 2e-6);
+  EXPECT_EQ(response.top, 0.0);  // nine of 12000 pixels are no wall
 }
 
 TEST(WallResponse, RefusesMapsOfDifferentCamerasAndABorderWithoutData) {

@@ -20,16 +20,22 @@ using experiment::Experiment;
 class MapSource {
  public:
   explicit MapSource(const Experiment& experiment) {
-    if (experiment.instrument.reference) {
-      reference_ = io::read_height_map(*experiment.instrument.reference);
+    const auto& instrument = experiment.instrument;
+    if (instrument.pixel_pitch) {
+      options_.pitch_x = (*instrument.pixel_pitch)[0];
+      options_.pitch_y = (*instrument.pixel_pitch)[1];
     }
+    options_.height_unit = instrument.height_unit;
+    options_.channel = instrument.channel;
+    if (instrument.reference) reference_ = io::read_height_map(*instrument.reference, options_);
   }
   HeightMap read(const std::filesystem::path& path) const {
-    HeightMap map = io::read_height_map(path);
+    HeightMap map = io::read_height_map(path, options_);
     return reference_ ? maps::subtract_reference(map, *reference_, path.string()) : map;
   }
 
  private:
+  io::ReadOptions options_;
   std::optional<HeightMap> reference_;
 };
 

@@ -53,13 +53,14 @@ ReportUnits report_units(const results::Measurement& m) {
 }
 
 std::string flow_rate_label(const results::Measurement& m, Index run, const ReportUnits& units) {
-  return number_text(m.flow_rate(run) / units.flow_rate.si, 3) + " " + units.flow_rate.name;
+  return short_number_text(m.flow_rate(run) / units.flow_rate.si) + " " + units.flow_rate.name;
 }
 
 std::string common_settings() {
   return "set encoding utf8\n"
          "set border lw 1.2\n"
-         "set tics in mirror scale 0.8\n"
+         "set xtics in mirror scale 0.8\nset ytics in mirror scale 0.8\nunset x2tics\nunset "
+         "y2tics\nset minussign\n"
          "set style textbox opaque noborder fillcolor '#ffffff' margins 0.3,0.1\n"
          "set key outside above center horizontal Left reverse samplen 2.5 width 1\n"
          "set bars 0.6\n";

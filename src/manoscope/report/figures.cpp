@@ -34,8 +34,8 @@ void remove_date(std::string& pdf) {
 std::vector<Figure> figures(const results::Measurement& measurement) {
   std::vector<Figure> list;
   for (const auto make :
-       {&pressure_at_highest_flow, &pressure_at_lowest_flow, &pressure_of_all_runs, &drop_agreement,
-        &pressure_drop, &static_profiles, &flow_profiles, &profiles_overlaid, &crest_deflection}) {
+       {&pressure_at_highest_flow, &pressure_at_lowest_flow, &pressure_of_all_runs, &flow_profiles,
+        &drop_agreement, &pressure_drop, &static_profiles, &profiles_overlaid, &crest_deflection}) {
     if (auto figure = make(measurement)) list.push_back(std::move(*figure));
   }
   return list;

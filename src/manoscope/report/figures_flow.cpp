@@ -43,13 +43,18 @@ void draw_drops(PlotScript& script, const Measurement& m, const ReportUnits& uni
                           name("Δ{/:Italic p}_e read off the wall, test section")));
 }
 
-bool has_positive_pair(const Measurement& m) {
-  Index n = 0;
-  for (Index run = 0; run < m.flow_rate.size(); ++run) {
-    n +=
-        std::isgreater(m.flow_rate(run), 0.0) && std::isgreater(m.extracted_drop(run), 0.0) ? 1 : 0;
+/// Settings of a logarithmic axis around the positive numbers, with some room; "" without any.
+std::string axis_around(const char* axis, const std::vector<Array1>& lists, double scale) {
+  double low = 0.0, high = 0.0;
+  for (const Array1& list : lists) {
+    for (Index i = 0; i < list.size(); ++i) {
+      if (!std::isgreater(list(i), 0.0)) continue;
+      low = high == 0.0 ? list(i) : std::min(low, list(i));
+      high = std::max(high, list(i));
+    }
   }
-  return n >= 2;
+  return high == 0.0 ? std::string()
+                     : logarithmic_axis(axis, low / 1.4 / scale, 1.4 * high / scale);
 }
 
 }  // namespace
@@ -57,17 +62,22 @@ bool has_positive_pair(const Measurement& m) {
 std::optional<Figure> pressure_drop(const Measurement& m) {
   const ReportUnits units = report_units(m);
   PlotScript script;
-  script.set(common_settings()).set("set multiplot layout 1,2");
+  script.set(common_settings()).set("set multiplot layout 1,2\nset bmargin 4\nset tmargin 1");
   script.set("set key inside top left vertical spacing 1.05");
   script.set(fmt::format("set xlabel '{{/:Italic Q}} ({})'", units.flow_rate.name));
   script.set(fmt::format("set ylabel 'Δ{{/:Italic p}} ({})'", units.drop.name));
-  script.set("set xrange [0:*]\nset yrange [0:*]\nset offsets graph 0, graph 0.05, graph 0.35, 0");
+  script.set("set xrange [0:*]\nset yrange [0:*]\nset offsets graph 0, graph 0.05, graph 0.55, 0");
   draw_drops(script, m, units, true);
   script.plot();
   if (!script.has_content()) return std::nullopt;
-  if (has_positive_pair(m)) {
-    script.set("unset key\nset logscale xy\nset xrange [*:*]\nset yrange [*:*]");
-    script.set("set offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05");
+  const auto x_axis = axis_around("x", {m.flow_rate}, units.flow_rate.si);
+  const auto y_axis = axis_around("y",
+                                  {m.extracted_drop, m.resistance_drop, m.channel_resistance_drop,
+                                   m.transducer_drop - m.parasitic_drop},
+                                  units.drop.si);
+  if (!x_axis.empty() && !y_axis.empty()) {
+    script.set("unset key\nset offsets 0, 0, 0, 0");
+    script.set(x_axis).set(y_axis);
     draw_drops(script, m, units, false);
     script.plot();
   }
@@ -135,7 +145,7 @@ std::optional<Figure> drop_agreement(const Measurement& m) {
   }
   if (high <= low) high = units.drop.si;
   PlotScript script;
-  script.set(common_settings()).set("set multiplot layout 1,2");
+  script.set(common_settings()).set("set multiplot layout 1,2\nset bmargin 4\nset tmargin 1");
   script.set("set key inside top left vertical");
   script.set(fmt::format("set xlabel 'Δ{{/:Italic p}}_e ({})'", units.drop.name));
   script.set(fmt::format("set ylabel '{{/:Italic QR}} ({})'", units.drop.name));

@@ -79,7 +79,7 @@ void draw_linear_fit(PlotScript& script, const Measurement& m, Index run, const 
   const Array1 p = fit->first + fit->second * x;
   const double slope = fit->second * units.x.si / pressure.si;
   script.draw(script.add_data({x / units.x.si, p / pressure.si}),
-              fmt::format("using 1:2 with lines dt 3 lw 2 lc rgb '{}' {}", kBlack,
+              fmt::format("using 1:2 with lines dt 3 lw 1.6 lc rgb '{}' {}", kBlack,
                           title(fmt::format("linear fit, {} {}/{}", number_text(slope, 3),
                                             pressure.name, units.x.name))));
 }
@@ -90,12 +90,12 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
       largest_magnitude(row(m.pressure, run)), largest_magnitude(row(m.resistance_pressure, run))));
   PlotScript script;
   script.set(common_settings());
-  script.set("set key outside above center horizontal maxcols 2 width -3");
+  script.set("set key maxrows 3 width -9 font ',13'");
   script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
   script.set(fmt::format("set ylabel '{{/:Italic p}} ({})' textcolor rgb '{}'", unit.name, kBlue));
   script.set(fmt::format("set y2label '{{/:Italic ζ}} ({})' textcolor rgb '{}'",
                          units.deflection.name, kRed));
-  script.set("set ytics nomirror\nset y2tics");
+  script.set("set ytics nomirror\nset y2tics in scale 0.8");
   script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
   shade_test_section(script, m, run, units);
   const Array1 x = thinned(m.x) / units.x.si;
@@ -109,7 +109,7 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
                           "noborder {}",
                           kBlue, title(fmt::format("{:.3g} % interval", 100.0 * m.coverage))));
   const auto pressure = script.add_data({x, row(m.pressure, run) / unit.si});
-  script.draw(pressure, fmt::format("using 1:2 with lines lw 2 lc rgb '{}' {}", kBlue,
+  script.draw(pressure, fmt::format("using 1:2 with lines lw 2.4 lc rgb '{}' {}", kBlue,
                                     title("{/:Italic p}({/:Italic x}) read off the wall")));
   script.draw(script.add_data({x, row(m.resistance_pressure, run) / unit.si}),
               fmt::format("using 1:2 with lines dt 2 lw 2 lc rgb '{}' {}", kGrey,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "manoscope/report/figure_data.hpp"
@@ -30,9 +31,9 @@ void label_levels(PlotScript& script, const Measurement& m, const ReportUnits& u
     if (!std::isfinite(at_label)) continue;
     const DisplayUnit unit = pressure_unit(m.level_pressure(level));
     script.set(fmt::format(
-        "set label '{} {}' at {},{} center front boxed font ',12' textcolor rgb '{}'",
-        number_text(m.level_pressure(level) / unit.si, 3), unit.name, plain(m.x(ix) / units.x.si),
-        plain(at_label), ordered_colour(level, m.level_pressure.size())));
+        "set label '{} {}' at {},{} center front boxed font ',12' textcolor rgb \'#1c2430\'",
+        short_number_text(m.level_pressure(level) / unit.si, 3), unit.name,
+        plain(m.x(ix) / units.x.si), plain(at_label)));
     last = height;
     ++n_labels;
   }
@@ -40,7 +41,8 @@ void label_levels(PlotScript& script, const Measurement& m, const ReportUnits& u
 
 /// Highest and lowest of the positive values at positive pressure, for the reference slopes.
 struct LogRange {
-  double p_low = 0.0, z_low = 0.0, p_high = 0.0, z_high = 0.0;
+  double p_low = 0.0, z_low = 0.0, p_high = 0.0, z_high = 0.0;  // at the ends in p
+  double z_lowest = 0.0, z_highest = 0.0;
   Index n = 0;
 };
 
@@ -50,8 +52,10 @@ LogRange positive_range(const Array1& p, const Array1& z) {
     if (!std::isgreater(p(i), 0.0) || !std::isgreater(z(i), 0.0)) continue;
     if (range.n == 0) {
       range.p_low = p(i);
-      range.z_low = z(i);
+      range.z_low = range.z_lowest = z(i);
     }
+    range.z_lowest = std::min(range.z_lowest, z(i));
+    range.z_highest = std::max(range.z_highest, z(i));
     range.p_high = p(i);
     range.z_high = z(i);
     ++range.n;
@@ -67,14 +71,12 @@ Array1 only_positive(const Array1& values) {
 void log_panel(PlotScript& script, const Array1& p, const Array1& z, const Array1& expanded) {
   const LogRange range = positive_range(p, z);
   if (range.n < 2 || range.p_high <= range.p_low) return;
-  script.set("set logscale xy").set("set format x '10^{%T}'").set("set format y '%g'");
-  script.set("set key inside bottom right vertical");
-  script.set(
-      fmt::format("set xrange [{}:{}]", plain(0.6 * range.p_low), plain(1.7 * range.p_high)));
-  script.set("set format x '%g'");
+  script.set("set key inside bottom right vertical\nset offsets 0, 0, 0, 0");
+  script.set(logarithmic_axis("x", 0.6 * range.p_low, 1.7 * range.p_high));
+  script.set(logarithmic_axis("y", 0.4 * range.z_lowest, 2.0 * range.z_highest));
   const double span = std::sqrt(range.p_high / range.p_low);
   const Array1 upper{{range.p_high / span, range.p_high}};
-  const Array1 lower{{range.p_low, range.p_low * std::min(span, 10.0)}};
+  const Array1 lower{{range.p_low, range.p_low * std::min(span, 4.0)}};
   const auto third =
       script.add_data({upper, 1.25 * range.z_high * (upper / range.p_high).pow(1.0 / 3.0)});
   const auto first = script.add_data({lower, 0.75 * range.z_low * (lower / range.p_low)});
@@ -125,9 +127,13 @@ std::optional<Figure> crest_deflection(const Measurement& m) {
   const Array1 z = m.crest_deflection / length.si;
   const Array1 expanded = coverage_factor(m.coverage) * m.crest_deflection_uncertainty / length.si;
   PlotScript script;
-  script.set(common_settings()).set("unset key").set("set multiplot layout 1,2");
+  script.set(common_settings())
+      .set("unset key")
+      .set("set multiplot layout 1,2\nset bmargin 4\nset tmargin 1");
   script.set(fmt::format("set xlabel '{{/:Italic p}} ({})'", units.pressure.name));
   script.set(fmt::format("set ylabel '{{/:Italic ζ}}_p ({})'", length.name));
+  const double largest = std::max(largest_magnitude(p), 1e-6);
+  script.set(fmt::format("set xrange [{}:{}]", plain(-0.03 * largest), plain(1.04 * largest)));
   script.set("set xzeroaxis lt 1 lw 0.8 lc rgb '#b4b4b4'");
   const auto data = script.add_data({p, z, expanded});
   script.draw(data, fmt::format("using 1:2 with lines lw 1 lc rgb '{}'", kPale));
@@ -139,7 +145,7 @@ std::optional<Figure> crest_deflection(const Measurement& m) {
   return Figure{
       "fig1ef_crest_deflection",
       "Crest deflection against pressure",
-      "Deflection ζp at mid-channel on the centre line against the applied pressure: left on "
+      "Deflection ζ_p at mid-channel on the centre line against the applied pressure: left on "
       "linear axes, right on logarithmic ones, where only positive values can be shown. A "
       "stretching membrane follows the slope 1/3, a plate or a tense membrane the slope 1. "
       "Bars: expanded uncertainty, mostly smaller than the symbols. As fig. 1(e), (f) of Ozsun "

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "manoscope/report/html_style.hpp"
 #include "manoscope/report/html_tables.hpp"
@@ -45,6 +47,19 @@ std::string warnings_list(const Measurement& m, const std::vector<std::string>& 
   return "<h2 id=\"warnings\">Warnings</h2>\n<ul class=\"warnings\">\n" + items + "</ul>\n";
 }
 
+/// The subscripts of our own captions.
+std::string with_subscripts(std::string text) {
+  for (const auto& [plain_text, html] : {std::pair{"Δp_e", "Δ<i>p</i><sub>e</sub>"},
+                                         {"E_n", "<i>E</i><sub>n</sub>"},
+                                         {"ζ_p", "<i>ζ</i><sub>p</sub>"}}) {
+    const std::string_view from(plain_text), to(html);
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+      text.replace(at, from.size(), to);
+    }
+  }
+  return text;
+}
+
 std::string figures_part(const std::vector<ShownFigure>& shown) {
   if (shown.empty()) return {};
   std::string part = "<h2 id=\"figures\">Figures</h2>\n<div class=\"figures\">\n";
@@ -52,7 +67,7 @@ std::string figures_part(const std::vector<ShownFigure>& shown) {
     part += fmt::format("<figure{} id=\"{}\">\n{}\n<figcaption><b>{}</b>{}</figcaption></figure>\n",
                         entry.figure.width > 700 ? " class=\"wide\"" : "", entry.figure.name,
                         inline_svg(entry.svg, entry.figure.name), escape_html(entry.figure.title),
-                        escape_html(entry.figure.caption));
+                        with_subscripts(escape_html(entry.figure.caption)));
   }
   return part + "</div>\n";
 }

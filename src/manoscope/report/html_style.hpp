@@ -24,11 +24,13 @@ section.card{padding:.4rem 1.1rem}
 .facts dt{color:var(--soft)}
 .facts dd{margin:0}
 div.scroll{overflow-x:auto;margin:1rem 0;padding:.2rem .8rem .6rem}
+div.tall{max-height:34rem;overflow:auto}
+div.tall thead th{position:sticky;top:0;background:var(--paper)}
 table{border-collapse:collapse;font-size:.94rem;font-variant-numeric:tabular-nums;width:100%}
-caption{text-align:left;color:var(--soft);padding:.7rem .3rem .5rem;max-width:60rem}
+p.caption{color:var(--soft);font-size:.94rem;margin:1.2rem 0 -.4rem;max-width:60rem}
 th,td{padding:.34rem .6rem;text-align:right;border-top:1px solid var(--line);white-space:nowrap}
 thead th{border-top:0;border-bottom:2px solid var(--line);vertical-align:bottom;white-space:normal;font-weight:600}
-th:first-child,td:first-child,td.words{text-align:left}
+th:first-child,td:first-child,.words{text-align:left}
 td.words{white-space:normal}
 td.share{background:linear-gradient(to left,var(--bar) var(--share),transparent 0)}
 .good{color:var(--good);font-weight:600}
@@ -46,6 +48,7 @@ pre{background:var(--paper);border:1px solid var(--line);border-radius:8px;paddi
 details{margin:.6rem 0}
 summary{cursor:pointer;font-weight:600}
 code{font-family:ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;font-size:.94em}
+@media (max-width:900px){table{font-size:.86rem}th,td{padding:.3rem .4rem}}
 @media print{body{background:#fff}main{max-width:none}figure,div.scroll{break-inside:avoid}}
 )";
 

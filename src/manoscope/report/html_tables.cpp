@@ -19,6 +19,12 @@ std::string with_unit(double value, int digits, DisplayUnit (*unit_for)(double))
   return number_text(value / unit.si, digits) + " " + unit.name;
 }
 
+/// A length as the user gave it.
+std::string given(double length) {
+  const DisplayUnit unit = length_unit(length);
+  return short_number_text(length / unit.si) + " " + unit.name;
+}
+
 std::string fact(const std::string& name, const std::string& value) {
   return fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, value);
 }
@@ -34,8 +40,8 @@ std::string range_text(const Array1& values, DisplayUnit (*unit_for)(double)) {
   }
   if (n == 0) return "–";
   const DisplayUnit unit = unit_for(std::max(std::abs(low), std::abs(high)));
-  return fmt::format("{} to {} {}", number_text(low / unit.si, 4), number_text(high / unit.si, 4),
-                     unit.name);
+  return fmt::format("{} to {} {}", short_number_text(low / unit.si),
+                     short_number_text(high / unit.si), unit.name);
 }
 
 std::string count(Index n, const char* one, const char* many) {
@@ -51,11 +57,12 @@ std::string column_head(const std::string& content) {
 }
 
 /// A table that scrolls by itself where the page is narrow.
-std::string table(const std::string& caption, const std::string& head, const std::string& body) {
+std::string table(const std::string& caption, const std::string& head, const std::string& body,
+                  bool tall = false) {
   return fmt::format(
-      "<div class=\"scroll\"><table><caption>{}</caption>\n<thead><tr>{}</tr></thead>\n"
+      "<p class=\"caption\">{}</p>\n<div class=\"scroll{}\"><table>\n<thead><tr>{}</tr></thead>\n"
       "<tbody>\n{}</tbody></table></div>\n",
-      caption, head, body);
+      caption, tall ? " tall" : "", head, body);
 }
 
 std::string verdict(double en_number) {
@@ -93,15 +100,15 @@ Index middle_station(const Measurement& m, Index run) {
 std::string facts_list(const Measurement& m) {
   const DisplayUnit gap = length_unit(m.channel_height);
   std::string list = "<dl class=\"facts\">\n";
-  list +=
-      fact("Channel", fmt::format("{} long, {} wide", with_unit(m.channel_length, 4, length_unit),
-                                  with_unit(m.channel_width, 4, length_unit)));
+  list += fact("Channel",
+               fmt::format("{} long, {} wide", given(m.channel_length), given(m.channel_width)));
   list += fact(
       "Gap 2h<sub>0</sub>",
       fmt::format("{} {} (standard uncertainty {} {})", number_text(m.channel_height / gap.si, 5),
                   gap.name, number_text(m.channel_height_uncertainty / gap.si, 2), gap.name));
-  list += fact("Fluid", fmt::format("viscosity {} mPa s, density {} kg/m³",
-                                    number_text(m.viscosity * 1e3, 4), number_text(m.density, 4)));
+  list += fact("Fluid",
+               fmt::format("viscosity {} mPa s, density {} kg/m³",
+                           short_number_text(m.viscosity * 1e3), short_number_text(m.density)));
   list += fact("Calibration",
                fmt::format("{}, {}", count(m.level_pressure.size(), "pressure", "pressures"),
                            range_text(m.level_pressure, pressure_unit)));
@@ -130,15 +137,15 @@ std::string runs_table(const Measurement& m) {
   for (std::size_t i = 0; i < m.run.size(); ++i) {
     const auto run = static_cast<Index>(i);
     body += "<tr>" + row_head(m.run[i]) +
-            cell(number_text(m.flow_rate(run) / units.flow_rate.si, 4)) +
+            cell(short_number_text(m.flow_rate(run) / units.flow_rate.si)) +
             cell(number_text(m.reynolds(run), 3)) +
             cell(drop(m.extracted_drop(run), m.extracted_drop_uncertainty(run))) +
             cell(drop(m.resistance_drop(run), m.resistance_drop_uncertainty(run))) +
             cell(number_text(m.en_number(run), 2)) + cell(verdict(m.en_number(run))) +
             cell(number_text((m.transducer_drop(run) - m.parasitic_drop(run)) / units.drop.si, 4)) +
             cell(number_text(m.channel_resistance_drop(run) / units.drop.si, 4)) +
-            cell(fmt::format("{} to {}", number_text(m.test_section(run, 0) / units.x.si, 4),
-                             number_text(m.test_section(run, 1) / units.x.si, 4))) +
+            cell(fmt::format("{} to {}", short_number_text(m.test_section(run, 0) / units.x.si),
+                             short_number_text(m.test_section(run, 1) / units.x.si))) +
             cell(percent_text(read_fraction(m, run))) + "</tr>\n";
   }
   const std::string head =
@@ -212,7 +219,7 @@ std::string maps_table(const Measurement& m) {
       column_head("Map") + column_head("Tilt along (µm/mm)") + column_head("Tilt across (µm/mm)") +
           column_head(fmt::format("Noise ({})", noise.name)) + column_head("Missing") +
           column_head("Spikes"),
-      body);
+      body, m.map.size() > 14);
 }
 
 std::string flags_table(const Measurement& m) {
@@ -234,8 +241,8 @@ std::string flags_table(const Measurement& m) {
   return table(
       "Flags of the reading (bits of <code>pressure_flags</code>), counted over all stations of "
       "all runs. A missing pressure is NaN; it is never filled in.",
-      column_head("Flag") + column_head("Bit") + column_head("Meaning") + column_head("Pressure") +
-          column_head("Stations") + column_head("Share"),
+      column_head("Flag") + column_head("Bit") + "<th scope=\"col\" class=\"words\">Meaning</th>" +
+          column_head("Pressure") + column_head("Stations") + column_head("Share"),
       body);
 }
 

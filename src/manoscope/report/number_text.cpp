@@ -80,6 +80,14 @@ std::string number_text(double value, int digits) {
   return fixed(value, digits - 1 - power);
 }
 
+std::string short_number_text(double value, int digits) {
+  std::string text = number_text(value, digits);
+  if (text.find('.') == std::string::npos || text.find('e') != std::string::npos) return text;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 std::string number_text_with_uncertainty(double value, double uncertainty) {
   if (!std::isfinite(value)) return kMissing;
   if (!std::isfinite(uncertainty) || uncertainty <= 0.0) return number_text(value, 4);

@@ -25,6 +25,9 @@ double coverage_factor(double coverage);
 /// number that does not exist, and a real minus sign.
 std::string number_text(double value, int digits);
 
+/// The number with at most that many significant digits and no zeros behind the point: 70, 5.5.
+std::string short_number_text(double value, int digits = 4);
+
 /// "14.23 ± 0.12": the uncertainty with two significant digits, the value to the same decimal.
 ///
 /// An uncertainty that does not exist or is 0 leaves the value alone with four digits; a value that

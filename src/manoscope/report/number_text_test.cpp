@@ -40,6 +40,17 @@ TEST(NumberText, KeepsSignificantDigits) {
   EXPECT_EQ(percent_text(0.0), "0 %");
 }
 
+TEST(NumberText, DropsZerosThatSayNothingWhereNoUncertaintyIsMeant) {
+  EXPECT_EQ(short_number_text(70.0), "70");
+  EXPECT_EQ(short_number_text(5.5), "5.5");
+  EXPECT_EQ(short_number_text(0.12344), "0.1234");
+  EXPECT_EQ(short_number_text(49.9905), "49.99");
+  EXPECT_EQ(short_number_text(49.9905, 3), "50");
+  EXPECT_EQ(short_number_text(12000.0), "12000");
+  EXPECT_EQ(short_number_text(-0.5), "−0.5");
+  EXPECT_EQ(short_number_text(kNan), "–");
+}
+
 TEST(NumberText, ChoosesAUnitThatKeepsNumbersShort) {
   EXPECT_EQ(pressure_unit(50e3).name, "kPa");
   EXPECT_EQ(pressure_unit(800.0).name, "Pa");

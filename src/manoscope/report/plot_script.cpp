@@ -22,7 +22,7 @@ std::string ordered_colour(Index index, Index n) {
                                                         {94, 201, 98},
                                                         {173, 220, 48},
                                                         {253, 231, 37}}};
-  constexpr double kEnd = 0.8;
+  constexpr double kEnd = 0.72;
   const double place =
       n < 2 ? 0.0 : 8.0 * kEnd * static_cast<double>(index) / static_cast<double>(n - 1);
   const auto low = std::min<std::size_t>(static_cast<std::size_t>(place), 7);
@@ -83,6 +83,24 @@ Array1 thinned(const Array1& values) {
   const Index step = std::max<Index>((values.size() + kMost - 1) / kMost, 1);
   const Index n = (values.size() + step - 1) / step;
   return Array1::NullaryExpr(n, [&](Index i) { return values(i * step); });
+}
+
+std::string logarithmic_axis(const std::string& axis, double low, double high) {
+  MANO_ASSERT(low > 0.0 && high > low);
+  std::string settings =
+      fmt::format("set logscale {0}\nset {0}range [{1}:{2}]\n", axis, plain(low), plain(high));
+  const double decades = std::log10(high / low);
+  if (decades > 5.0) return settings;
+  std::vector<std::string> ticks;
+  for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high;
+       ++power) {
+    for (int mantissa = 1; mantissa < 10; ++mantissa) {
+      const double value = mantissa * std::pow(10.0, power);
+      const bool labelled = mantissa == 1 || (decades < 2.5 && (mantissa == 2 || mantissa == 5));
+      ticks.push_back(labelled ? plain(value) : fmt::format("'' {} 1", plain(value)));
+    }
+  }
+  return settings + fmt::format("set {}tics ({})\n", axis, fmt::join(ticks, ", "));
 }
 
 std::string plain(double value) { return fmt::format("{:.6g}", value); }

@@ -51,6 +51,10 @@ class PlotScript {
 /// Every k-th entry, so that at most about 500 are left: more cannot be told apart in a figure.
 Array1 thinned(const Array1& values);
 
+/// Settings of a logarithmic axis ("x" or "y") from low to high, 0 < low < high: range, and ticks
+/// at 1, 2 and 5 of each decade where there are few decades.
+std::string logarithmic_axis(const std::string& axis, double low, double high);
+
 /// A number as gnuplot reads it.
 std::string plain(double value);
 
