@@ -9,6 +9,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 BUILD_TYPE ?= Release
 DEMO ?= manoscope-demo
 PACKAGES ?= yes
+PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
 
 # CMake takes these as the defaults of a new build folder and leaves one that exists as it is.
@@ -23,7 +24,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs check format format-check layers scripts tidy asan clean \
+.PHONY: all demo test bench docs accuracy check format format-check layers scripts tidy asan clean \
         install-packages help
 
 all: ## build the program, build/manoscope (the default)
@@ -47,6 +48,9 @@ bench: ## time the program against the same work in numpy
 
 docs: all ## check links and commands of the documentation
 	@tools/check_docs.py --program $(BUILD)/manoscope
+
+accuracy: all ## measure experiments with known truth, write the tables of docs/accuracy.md
+	tools/accuracy_table.py $(BUILD)/manoscope docs/accuracy.md $(wildcard $(PRACTICE)/S*)
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 

@@ -9,6 +9,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/random.hpp"
 #include "tests/support/local_wall.hpp"
+#include "tests/support/quiet_traps.hpp"
 
 namespace manoscope::calibration {
 namespace {
@@ -217,6 +218,7 @@ TEST(FitCurves, TakesEveryFallForRealWhereNoUncertaintyIsGiven) {
 }
 
 TEST(FitCurves, RefusesOptionsOutOfRange) {
+  const test::QuietTraps quiet;
   const auto levels = sampled(even(5, 0.0, 8e3), [](double p) { return 1e-9 * p; });
   for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     for (const bool first : {true, false}) {

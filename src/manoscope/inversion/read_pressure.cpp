@@ -46,16 +46,24 @@ void add_level_modes(const ConstitutiveCurves& curves, const Matrix& weight, Mod
   }
 }
 
+/// Whether deflections within `reach` of `zeta` have more than one pressure: whether any falling
+/// stretch of the curve spans one of them.
+bool near_fold(const ConstitutiveCurve& curve, double zeta, double reach) {
+  const auto& knots = curve.knots();
+  for (std::size_t j = 1; j < knots.size(); ++j) {
+    const double above = knots[j - 1].zeta, below = knots[j].zeta;
+    if (below < above && zeta + reach >= below && zeta - reach <= above) return true;
+  }
+  return false;
+}
+
 /// The one pressure that fits, or the flag that says why there is none.
 FlagBits solve_station(const ConstitutiveCurve& curve, double zeta, double sigma, double reach,
                        double& pressure) {
   const std::vector<double> solutions = curve.pressures(zeta);
+  if (near_fold(curve, zeta, reach * sigma) && !solutions.empty()) return ReadingFlag::ambiguous;
   if (solutions.empty()) return ReadingFlag::out_of_calibration;
   if (solutions.size() > 1) return ReadingFlag::ambiguous;
-  if (curve.pressures(zeta - reach * sigma).size() > 1 ||
-      curve.pressures(zeta + reach * sigma).size() > 1) {
-    return ReadingFlag::ambiguous;
-  }
   pressure = solutions.front();
   return 0;
 }

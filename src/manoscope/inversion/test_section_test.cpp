@@ -7,6 +7,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
+#include "tests/support/quiet_traps.hpp"
 
 namespace manoscope::inversion {
 namespace {
@@ -122,6 +123,7 @@ TEST(TestSection, DoesNotExistWhereNothingQualifies) {
 }
 
 TEST(TestSectionOptions, RefuseValuesOutOfRangeByName) {
+  const test::QuietTraps quiet;
   const auto where = [](const TestSectionOptions& options) {
     try {
       options.validate();

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/provenance.hpp"
 #include "manoscope/core/unit_text.hpp"
 #include "tests/support/example_measurement.hpp"
 
@@ -58,6 +59,14 @@ TEST(Schema, PrintsOneLineAVariable) {
   EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')),
             variables().size() + 2);
   EXPECT_NE(text.find("| `pressure_covariance` | run, x, x_other | Pa2 |"), std::string::npos);
+}
+
+TEST(Schema, IsTheTableOfTheManual) {
+  const std::string page =
+      read_file(std::filesystem::path(MANOSCOPE_SOURCE_DIR) / "docs" / "result-file.md");
+  EXPECT_NE(page.find(schema_as_markdown()), std::string::npos)
+      << "put this into docs/result-file.md:\n"
+      << schema_as_markdown();
 }
 
 }  // namespace

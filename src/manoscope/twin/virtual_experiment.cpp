@@ -119,7 +119,7 @@ VirtualExperiment make_virtual_experiment(const Scenario& scenario, std::uint64_
   });
   for (std::optional<NamedMap>& map : maps) experiment.maps.push_back(*std::move(map));
 
-  const double height_error = RandomStream(seed, "channel height").normal();
+  const double height_error = RandomStream(seed, "stated height").normal();
   experiment.experiment_toml = experiment_toml(
       scenario, scenario.channel.height + height_error * scenario.height_uncertainty);
   experiment.hydrostatic_csv = hydrostatic_csv(scenario, experiment.levels);

@@ -1,0 +1,177 @@
+// Google Benchmark of each stage from a map file to p(x): bench_stages [--benchmark_filter=...].
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "inputs.hpp"
+#include "manoscope/calibration/fit_curves.hpp"
+#include "manoscope/core/provenance.hpp"
+#include "manoscope/core/random.hpp"
+#include "manoscope/inversion/read_pressure.hpp"
+#include "manoscope/io/reader.hpp"
+#include "manoscope/io/writer.hpp"
+#include "manoscope/maps/channel_map.hpp"
+#include "manoscope/maps/despike.hpp"
+#include "manoscope/maps/level.hpp"
+#include "manoscope/maps/noise.hpp"
+#include "manoscope/maps/reduce.hpp"
+
+namespace manoscope::bench {
+namespace {
+
+/// One map of 1024 x 192 pixels, on disk and in memory, removed at the end.
+class OneMap {
+ public:
+  OneMap() {
+    std::string name = (std::filesystem::temp_directory_path() / "manoscope-bench-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    folder = name;
+    file = folder / "map.gsf";
+    io::write_map(file, twin::record_map(channel, bulge(channel, 3, 4), full_camera(), kSeed, 0),
+                  "benchmark");
+    map = io::read_height_map(file);
+    frame = twin::channel_frame(channel, full_camera());
+    raw = maps::to_channel_frame(*map, frame);
+    rim = maps::rim_mask(raw.grid, frame.length, frame.width, 50.0 * um);
+    leveled = raw;
+    maps::subtract_plane(leveled, maps::fit_rim_plane(leveled, rim, "map"));
+  }
+  OneMap(const OneMap&) = delete;
+  OneMap& operator=(const OneMap&) = delete;
+  ~OneMap() { std::filesystem::remove_all(folder); }
+
+  flow::Channel channel = twin::small_s1().channel;
+  std::filesystem::path folder, file;
+  std::optional<HeightMap> map;
+  ChannelFrame frame;
+  maps::ChannelMap raw, leveled;
+  Flags2 rim;
+};
+
+const OneMap& one_map() {
+  static const OneMap map;
+  return map;
+}
+
+void hash_file(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(sha256(read_file(one_map().file)));
+}
+
+void read_gsf(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(io::read_height_map(one_map().file));
+}
+
+void to_channel_frame(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(maps::to_channel_frame(*one_map().map, one_map().frame));
+  }
+}
+
+void level(benchmark::State& state) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    maps::ChannelMap map = one_map().raw;
+    state.ResumeTiming();
+    maps::subtract_plane(map, maps::fit_rim_plane(map, one_map().rim, "map"));
+    benchmark::DoNotOptimize(map.height.data());
+  }
+}
+
+void measure_noise(benchmark::State& state) {
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(maps::measure_noise(one_map().leveled, one_map().rim));
+  }
+}
+
+void despike(benchmark::State& state) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    maps::ChannelMap map = one_map().leveled;
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(maps::flag_spikes(map, 20.0 * nm, 6.0));
+  }
+}
+
+void width_average(benchmark::State& state) {
+  const OneMap& one = one_map();
+  const maps::LeveledMap leveled = maps::level_map(*one.map, one.frame, std::nullopt, "map");
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(maps::width_average(leveled.deflection, leveled.plane,
+                                                 one.frame.length, one.frame.width, "map"));
+  }
+}
+
+void reduce_map(benchmark::State& state) {
+  const OneMap& one = one_map();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(maps::reduce_map(*one.map, one.frame, std::nullopt, "map"));
+  }
+}
+
+/// 974 stations and 25 levels of a stretching wall, with the error modes that reduced maps have.
+Profile profile_at(double pressure_Pa, const std::string& name) {
+  constexpr Index kStations = 974;
+  constexpr double kStretching = 2.5e-7;  // m / Pa^(1/3): 9 um at 50 kPa
+  Profile profile;
+  profile.x = Array1::LinSpaced(kStations, 0.01e-3, 15.49e-3);
+  const Array1 ends = 1.0 - (-profile.x / 0.5e-3).exp() - ((profile.x - 15.5e-3) / 0.5e-3).exp();
+  RandomStream stream(kSeed, name);
+  profile.zeta = kStretching * std::cbrt(pressure_Pa) * ends.max(1e-3);
+  for (double& value : profile.zeta) value += 1.75e-9 * stream.normal();
+  profile.flags = Flags1::Zero(kStations);
+  profile.uncertainty.independent = Array1::Constant(kStations, 1.75e-9);
+  for (const char* what : {"offset", "tilt x", "tilt z", "shift"}) {
+    profile.uncertainty.modes.push_back(
+        {what + (" of " + name), "leveling", Array1::Constant(kStations, 0.1e-9)});
+  }
+  return profile;
+}
+
+std::vector<calibration::Level> calibration_levels() {
+  std::vector<calibration::Level> levels;
+  for (int k = 0; k < 25; ++k) {
+    const double pressure_Pa = k == 0 ? 0.0 : 100.0 * std::pow(500.0, (k - 1) / 23.0);
+    const std::string name = "h" + std::to_string(k);
+    levels.push_back({name, Pressure::from_si(pressure_Pa), k == 0 ? Pressure{} : 10.0 * Pa,
+                      profile_at(pressure_Pa, name)});
+  }
+  return levels;
+}
+
+void fit_curves(benchmark::State& state) {
+  const auto levels = calibration_levels();
+  for (auto _ : state) benchmark::DoNotOptimize(calibration::fit_curves(levels));
+}
+
+void read_pressure(benchmark::State& state) {
+  const auto curves = calibration::fit_curves(calibration_levels());
+  const Profile run = profile_at(12000.0, "f00");
+  for (auto _ : state) benchmark::DoNotOptimize(inversion::read_pressure(curves, run));
+}
+
+void read_pressure_and_covariance(benchmark::State& state) {
+  const auto curves = calibration::fit_curves(calibration_levels());
+  const Profile run = profile_at(12000.0, "f00");
+  for (auto _ : state) {
+    const auto reading = inversion::read_pressure(curves, run);
+    benchmark::DoNotOptimize(reading.uncertainty.covariance());
+  }
+}
+
+BENCHMARK(hash_file)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_gsf)->Unit(benchmark::kMillisecond);
+BENCHMARK(to_channel_frame)->Unit(benchmark::kMillisecond);
+BENCHMARK(level)->Unit(benchmark::kMillisecond);
+BENCHMARK(measure_noise)->Unit(benchmark::kMillisecond);
+BENCHMARK(despike)->Unit(benchmark::kMillisecond);
+BENCHMARK(width_average)->Unit(benchmark::kMillisecond);
+BENCHMARK(reduce_map)->Unit(benchmark::kMillisecond);
+BENCHMARK(fit_curves)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_pressure)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_pressure_and_covariance)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace manoscope::bench
+
+BENCHMARK_MAIN();
