@@ -102,8 +102,12 @@ def fit_plane(a, b, v):
     for step in range(30):
         size = np.abs(few[2] - (c[0] + c[1] * few[0] + c[2] * few[1]))
         weight = np.ones_like(size) if step == 0 else 1.0 / np.maximum(size, floor)
-        c, _ = solve_weighted(*few, weight)
+        following, _ = solve_weighted(*few, weight)
+        change = np.abs(following - c).max()
+        c = following
         floor = max(1e-2 * median(size), 1e-300)
+        if change <= 0.1 * floor:
+            break
     residual, term = np.empty_like(v), np.empty_like(v)
     for _ in range(20):
         np.multiply(a, c[1], out=residual)
@@ -116,8 +120,12 @@ def fit_plane(a, b, v):
         residual *= residual
         np.subtract(1.0, residual, out=residual)
         np.maximum(residual, 0.0, out=residual)
+        total, squares = residual.sum(), residual @ residual
+        # sum (1 - t)(1 - 5 t) over sum (1 - t)^2, from the sums of 1 - t and its square
+        stretch = 1.0 / np.clip((5.0 * squares - 4.0 * total) / squares, 0.6, 1.0)
         residual *= residual
         following, matrix = solve_weighted(a, b, v, residual)
+        following = c + stretch * (following - c)
         change = np.abs(following - c).max()
         c = following
         if change <= 1e-6 * sigma / np.sqrt(v.size):

@@ -34,8 +34,7 @@ std::filesystem::path folder() {
 double roughness(const std::vector<double>& zeta) {
   std::vector<double> residuals;
   for (std::size_t k = 2; k + 2 < zeta.size(); ++k) {
-    const double cubic =
-        (4.0 * (zeta[k - 1] + zeta[k + 1]) - zeta[k - 2] - zeta[k + 2]) / 6.0;
+    const double cubic = (4.0 * (zeta[k - 1] + zeta[k + 1]) - zeta[k - 2] - zeta[k + 2]) / 6.0;
     residuals.push_back(zeta[k] - cubic);
   }
   return numerics::mad_sigma(residuals, 0.0) / std::sqrt(1.0 + 34.0 / 36.0);
@@ -58,8 +57,8 @@ Specimen load(int number) {
     std::vector<double> zeta;
     for (std::size_t k = 0; k < kLevels; ++k) zeta.push_back(outward(k, pixel));
     if (std::count(zeta.begin(), zeta.end(), 0.0) > 0) continue;
-    specimen.monotone.push_back(std::adjacent_find(zeta.begin(), zeta.end(),
-                                                   std::greater_equal<>()) == zeta.end());
+    specimen.monotone.push_back(
+        std::adjacent_find(zeta.begin(), zeta.end(), std::greater_equal<>()) == zeta.end());
     curves.push_back(std::move(zeta));
   }
   const auto n = static_cast<Index>(curves.size());
@@ -116,19 +115,20 @@ TEST_P(MembraneDic, LeavingOnePressureOutReadsItBackAsWellAsAMonotoneCubic) {
   }
   double whole_squares = 0.0;
   for (const double error : whole) whole_squares += error * error;
-  // The reference: pressure interpolated over deflection by a monotone cubic (PCHIP), rms over the 18
-  // interior levels and all pixels whose 20 levels are monotone.
+  // The reference: pressure interpolated over deflection by a monotone cubic (PCHIP), rms over the
+  // 18 interior levels and all pixels whose 20 levels are monotone.
   EXPECT_LE(monotone.rms_hPa(), reference_hPa);
-  // Few pixels of a real fold or of none stay without answer.
   EXPECT_LE(monotone.unanswered, 0.01 * (monotone.n + monotone.unanswered));
-  RecordProperty("rms_hPa", std::to_string(monotone.rms_hPa()));
-  std::printf("specimen %d: rms %.2f hPa over %d readings (%d without answer, coverage %.2f); pixels "
-              "not monotone: %d readings, rms %.2f hPa, %d without answer; median of a map: rms %.2f "
-              "hPa\n",
-              number, monotone.rms_hPa(), monotone.n, monotone.unanswered,
-              static_cast<double>(monotone.covered) / monotone.n, other.n,
-              other.n > 0 ? other.rms_hPa() : 0.0, other.unanswered,
-              std::sqrt(whole_squares / static_cast<double>(whole.size())) / kHectopascal);
+  // Errors of a map are common to its pixels, so that 18 maps tell little more than this.
+  EXPECT_GE(monotone.covered, 0.9 * monotone.n);
+  std::printf(
+      "specimen %d: rms %.2f hPa over %d readings (%d without answer, coverage %.2f); pixels "
+      "not monotone: %d readings, rms %.2f hPa, %d without answer; median of a map: rms %.2f "
+      "hPa\n",
+      number, monotone.rms_hPa(), monotone.n, monotone.unanswered,
+      static_cast<double>(monotone.covered) / monotone.n, other.n,
+      other.n > 0 ? other.rms_hPa() : 0.0, other.unanswered,
+      std::sqrt(whole_squares / static_cast<double>(whole.size())) / kHectopascal);
 }
 
 INSTANTIATE_TEST_SUITE_P(Specimens, MembraneDic,

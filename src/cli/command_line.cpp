@@ -98,8 +98,8 @@ void Command::flag(const std::string& names, bool& value, const std::string& hel
 }
 
 void Command::described(const OptionInfo& info, const std::string& group,
-                        std::function<void(const std::string&)> set) {
-  impl_->app->add_option_function<std::string>("--" + info.name, std::move(set), info.help)
+                        const std::function<void(const std::string&)>& set) {
+  impl_->app->add_option_function<std::string>("--" + info.name, set, info.help)
       ->type_name(info.kind)
       ->default_str(info.value)
       ->group(group);

@@ -53,7 +53,7 @@ class Command {
 
  private:
   void described(const OptionInfo& info, const std::string& group,
-                 std::function<void(const std::string&)> set);
+                 const std::function<void(const std::string&)>& set);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -205,7 +205,7 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   if (run != 2) m.transducer_drop(run) = flow.drop + m.parasitic_drop(run) + 25.0 * noise.normal();
   m.en_number(run) =
       std::abs(m.extracted_drop(run) - m.resistance_drop(run)) /
-      (1.96 * std::hypot(m.extracted_drop_uncertainty(run), m.resistance_drop_uncertainty(run)));
+      (2.0 * std::hypot(m.extracted_drop_uncertainty(run), m.resistance_drop_uncertainty(run)));
 }
 
 void add_crossings(Measurement& m, bool wanted) {

@@ -17,8 +17,8 @@ struct NpyArray {
   std::vector<double> values;  ///< row-major
 };
 
-/// Reads a .npy file of format version 1.0 (numpy.lib.format): magic, version, length of the header,
-/// header (a Python dictionary), data.
+/// Reads a .npy file of format version 1.0 (numpy.lib.format): magic, version, length of the
+/// header, header (a Python dictionary), data.
 /// @throws std::runtime_error for anything else than little-endian float64 in C order.
 inline NpyArray read_npy(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -44,8 +44,8 @@ inline NpyArray read_npy(const std::filesystem::path& path) {
   if (open == std::string::npos || close == std::string::npos) refuse("no shape: " + header);
   std::istringstream sizes(header.substr(open + 1, close - open - 1));
   for (std::size_t size = 0; sizes >> size; sizes.ignore(1, ',')) array.shape.push_back(size);
-  const std::size_t n = std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1},
-                                        std::multiplies<>());
+  const std::size_t n =
+      std::accumulate(array.shape.begin(), array.shape.end(), std::size_t{1}, std::multiplies<>());
   if (bytes.size() != kPreamble + header_size + n * sizeof(double)) refuse("data are cut short");
   array.values.resize(n);
   std::copy_n(bytes.data() + kPreamble + header_size, n * sizeof(double),

@@ -30,8 +30,8 @@ class ConstitutiveCurve {
   std::vector<double> pressures(double zeta) const;
 
   /// Standard uncertainty, signed, m, of the curve between its knots: what another fair interpolant
-  /// through them would give instead. Shared by neighbouring stations whose readings lie between the
-  /// same two levels.
+  /// through them would give instead. Shared by neighbouring stations whose readings lie between
+  /// the same two levels.
   double interpolation_doubt(double pressure) const;
   /// The lower of the two knots around a pressure, by its first level.
   Index interval_level(double pressure) const;

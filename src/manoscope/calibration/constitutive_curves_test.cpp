@@ -141,5 +141,36 @@ TEST(ConstitutiveCurve, LabelWeightsAreExactOnAStraightCurve) {
   }
 }
 
+TEST(ConstitutiveCurve, InterpolationDoubtIsZeroAtKnotsAndOnAStraightCurve) {
+  const ConstitutiveCurve curve(kScale, knots_of(stretching, test::log_spaced(9, 200.0, 40e3)));
+  double largest = 0.0;
+  for (const Knot& knot : curve.knots()) {
+    EXPECT_NEAR(curve.interpolation_doubt(knot.pressure), 0.0, 1e-20);  // round-off
+  }
+  for (double p = 50.0; p < 40e3; p *= 1.1) {
+    largest = std::max(largest, std::abs(curve.interpolation_doubt(p)));
+  }
+  EXPECT_GT(largest, 1e-10);
+  std::vector<Knot> straight;
+  for (Index k = 0; k < 5; ++k) {
+    const double u = 0.4 * static_cast<double>(k * k);
+    straight.push_back({{k}, kScale.pressure(u), 1e-6 * u});
+  }
+  const ConstitutiveCurve line(kScale, straight);
+  for (double p = 1.0; p < line.highest(); p *= 1.7) {
+    EXPECT_NEAR(line.interpolation_doubt(p), 0.0, 1e-19);  // round-off
+  }
+}
+
+TEST(ConstitutiveCurve, IntervalLevelIsTheKnotBelow) {
+  const ConstitutiveCurve curve(
+      kScale, {{{0}, 0.0, 0.0}, {{1, 2}, 1e3, 1e-6}, {{3}, 5e3, 2e-6}, {{4}, 9e3, 3e-6}});
+  EXPECT_EQ(curve.interval_level(0.0), 0);
+  EXPECT_EQ(curve.interval_level(999.0), 0);
+  EXPECT_EQ(curve.interval_level(1001.0), 1);
+  EXPECT_EQ(curve.interval_level(6e3), 3);
+  EXPECT_EQ(curve.interval_level(9e3), 3);
+}
+
 }  // namespace
 }  // namespace manoscope::calibration

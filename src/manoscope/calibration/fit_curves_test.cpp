@@ -210,8 +210,8 @@ TEST(FitCurves, HasNoCurveForAWallThatDoesNotMove) {
 }
 
 TEST(FitCurves, TakesEveryFallForRealWhereNoUncertaintyIsGiven) {
-  const auto levels = one_station({0.0, 1e3, 2e3, 3e3, 4e3, 5e3},
-                                  {0.0, 2e-6, 2e-6 - 1e-15, 2.5e-6, 2.5e-6, 3e-6});
+  const auto levels =
+      one_station({0.0, 1e3, 2e3, 3e3, 4e3, 5e3}, {0.0, 2e-6, 2e-6 - 1e-15, 2.5e-6, 2.5e-6, 3e-6});
   const auto curve = *fit_curves(levels).curves[0];
   EXPECT_EQ(knot_sizes(curve), (std::vector<std::size_t>{1, 1, 1, 2, 1}));  // equal is no fall
   EXPECT_LT(curve.knots()[2].zeta, curve.knots()[1].zeta);

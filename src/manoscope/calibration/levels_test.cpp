@@ -33,7 +33,8 @@ TEST(SortLevels, GivesTheSameWhateverTheOrder) {
   RandomStream stream(1, "order");
   for (int trial = 0; trial < 20; ++trial) {
     for (std::size_t k = levels.size() - 1; k > 0; --k) {
-      std::swap(levels[k], levels[static_cast<std::size_t>(stream.below(static_cast<Index>(k) + 1))]);
+      std::swap(levels[k],
+                levels[static_cast<std::size_t>(stream.below(static_cast<Index>(k) + 1))]);
     }
     const auto sorted = sort_levels(levels);
     ASSERT_EQ(sorted.size(), expected.size());

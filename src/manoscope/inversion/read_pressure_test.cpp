@@ -68,10 +68,10 @@ TEST(ReadPressure, ReadsAnyPressureOfAnExactWallBetweenItsLevels) {
       ASSERT_TRUE(reading.answered(ix));
       // Interpolation between 25 levels.
       EXPECT_NEAR(reading.pressure[ix], truth(x[ix]), 2e-4 * truth(x[ix]) + 0.5);
-      EXPECT_NEAR(reading.slope[ix],
-                  (wall.zeta(x[ix], truth(x[ix]) + 0.1) - wall.zeta(x[ix], truth(x[ix]) - 0.1)) /
-                      0.2,
-                  0.05 * reading.slope[ix]);
+      EXPECT_NEAR(
+          reading.slope[ix],
+          (wall.zeta(x[ix], truth(x[ix]) + 0.1) - wall.zeta(x[ix], truth(x[ix]) - 0.1)) / 0.2,
+          0.05 * reading.slope[ix]);
     }
   }
 }
@@ -115,7 +115,8 @@ TEST(ReadPressure, SaysOutOfCalibrationOnBothSidesAndExtrapolatesNowhere) {
 /// Deflection rises to 3 um at 3 kPa, falls to 2 um at 5 kPa, and rises for good.
 calibration::ConstitutiveCurves folded() {
   return fit_curves(one_station({0.0, 1e3, 2e3, 3e3, 4e3, 5e3, 6e3, 7e3, 8e3},
-                                {0.0, 1e-6, 2.2e-6, 3e-6, 2.5e-6, 2e-6, 2.8e-6, 4e-6, 5e-6}, 10e-9));
+                                {0.0, 1e-6, 2.2e-6, 3e-6, 2.5e-6, 2e-6, 2.8e-6, 4e-6, 5e-6},
+                                10e-9));
 }
 
 TEST(ReadPressure, SaysAmbiguousWhereTwoPressuresFitAndNowhereElse) {
@@ -143,8 +144,8 @@ TEST(ReadPressure, SaysAmbiguousWithinReachOfAFold) {
 
 TEST(ReadPressure, SaysAmbiguousWhereAFoldIsNarrowerThanTheReach) {
   // The fold spans 100 nm, the reach 400 nm to either side: both ends of it lie beyond the fold.
-  const auto curves = fit_curves(one_station({0.0, 1e3, 2e3, 3e3, 4e3, 5e3},
-                                             {0.0, 1e-6, 2e-6, 1.9e-6, 3e-6, 4e-6}, 10e-9));
+  const auto curves = fit_curves(
+      one_station({0.0, 1e3, 2e3, 3e3, 4e3, 5e3}, {0.0, 1e-6, 2e-6, 1.9e-6, 3e-6, 4e-6}, 10e-9));
   for (const double zeta : {1.8e-6, 1.95e-6, 2.1e-6}) {
     EXPECT_EQ(read_pressure(curves, state_of(zeta, 200e-9)).flags[0], ReadingFlag::ambiguous);
   }
@@ -205,10 +206,8 @@ TEST(ReadPressure, GaugeErrorsShiftAndScaleTheWholeReading) {
   const Array1 x = wall.stations(20);
   auto levels = calibrate(wall, x, even(24, 1e3, 50e3));
   for (Level& each : levels) each.uncertainty = 1e-6 * Pa;  // so that the zero concerns them
-  const auto state =
-      exact_profile(x, [&](double at) { return wall.zeta(at, 40e3 - 2e6 * at); });
-  const auto reading =
-      read_pressure(fit_curves(levels), state, {0.002, 5.0 * Pa});
+  const auto state = exact_profile(x, [&](double at) { return wall.zeta(at, 40e3 - 2e6 * at); });
+  const auto reading = read_pressure(fit_curves(levels), state, {0.002, 5.0 * Pa});
   bool has_gain = false, has_zero = false;
   for (const ErrorMode& mode : reading.uncertainty.modes) {
     for (Index ix = 0; ix < x.size(); ++ix) {
@@ -263,8 +262,7 @@ TEST(ReadPressureOptions, RefuseValuesOutOfRangeByName) {
     }
     return std::string();
   };
-  EXPECT_EQ(fault(&ReadPressureOptions::coverage, 1.0),
-            "--coverage is 1. Give a number in (0, 1)");
+  EXPECT_EQ(fault(&ReadPressureOptions::coverage, 1.0), "--coverage is 1. Give a number in (0, 1)");
   for (const double bad : {0.0, -0.5, 95.0, nan}) {
     EXPECT_NE(fault(&ReadPressureOptions::coverage, bad), "");
   }

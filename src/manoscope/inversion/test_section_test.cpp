@@ -119,7 +119,8 @@ TEST(TestSection, DoesNotExistWhereNothingQualifies) {
   reading.flags.setConstant(ReadingFlag::ambiguous);
   EXPECT_FALSE(find_test_section(reading, kLength, kWidth));
   flag_outside(reading, std::nullopt);
-  EXPECT_TRUE((reading.flags == (ReadingFlag::ambiguous | ReadingFlag::outside_test_section)).all());
+  EXPECT_TRUE(
+      (reading.flags == (ReadingFlag::ambiguous | ReadingFlag::outside_test_section)).all());
 }
 
 TEST(TestSectionOptions, RefuseValuesOutOfRangeByName) {

@@ -85,10 +85,9 @@ Pulls run_experiments(int n_experiments, double inlet, double outlet) {
     for (std::size_t k = 0; k < applied.size(); ++k) {
       const std::string name = "h" + std::to_string(k);
       const bool vented = applied[k] == 0.0;
-      const double label =
-          vented ? 0.0 : gain * applied[k] + zero + kLabelNoise * stream.normal();
-      levels.push_back(test::level(name, label, vented ? 0.0 : kLabelNoise,
-                                   noisy_map(exact[k], name, stream)));
+      const double label = vented ? 0.0 : gain * applied[k] + zero + kLabelNoise * stream.normal();
+      levels.push_back(
+          test::level(name, label, vented ? 0.0 : kLabelNoise, noisy_map(exact[k], name, stream)));
     }
     const Profile state = noisy_map(exact_state, "f", stream);
     const auto reading = read_pressure(calibration::fit_curves(levels), state, gauge);

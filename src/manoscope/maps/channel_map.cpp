@@ -95,13 +95,13 @@ Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_w
                 Length margin) {
   const double left = -margin.si(), right = channel_length.si() + margin.si();
   const double half = 0.5 * channel_width.si() + margin.si();
-  Flags2 mask(grid.nz, grid.nx);
+  Flags1 beyond_ends(grid.nx);
+  for (Index ix = 0; ix < grid.nx; ++ix) {
+    beyond_ends[ix] = grid.x(ix) > left && grid.x(ix) < right ? FlagBits{0} : FlagBits{1};
+  }
+  Flags2 mask = Flags2::Ones(grid.nz, grid.nx);
   for (Index iz = 0; iz < grid.nz; ++iz) {
-    const bool across = std::abs(grid.z(iz)) < half;
-    for (Index ix = 0; ix < grid.nx; ++ix) {
-      const double x = grid.x(ix);
-      mask(iz, ix) = across && x > left && x < right ? FlagBits{0} : FlagBits{1};
-    }
+    if (std::abs(grid.z(iz)) < half) mask.row(iz) = beyond_ends.transpose();
   }
   return mask;
 }

@@ -41,6 +41,61 @@ double step_along(const ChannelMap& map, Index iz, Index ix, Index dz, Index dx)
   return -1.0;
 }
 
+/// Steps of row iz as if every pixel were good, from its third column to its third last.
+void plain_steps(const Array2& height, Index iz, Array2& steps) {
+  const Index n = height.cols() - 4;
+  const auto pixels = [&](Index dz, Index dx) { return height.row(iz + dz).segment(2 + dx, n); };
+  const auto off_mean = [&](Index dz, Index dx) {
+    return (pixels(0, 0) - 0.5 * (pixels(-dz, -dx) + pixels(dz, dx))).abs();
+  };
+  auto row = steps.row(iz).segment(2, n);
+  row = off_mean(0, 1);
+  row = row.min(off_mean(0, 2));
+  row = row.min(off_mean(1, 0));
+  row = row.min(off_mean(2, 0));
+}
+
+/// Whether anything keeps the pixels of row iz from their plain steps: a flag on them or on one of
+/// their eight neighbours, or the edge of the map.
+void find_hindered(const Flags2& flags, Index iz, Flags1& hindered) {
+  const Index nz = flags.rows(), nx = flags.cols();
+  if (iz < 2 || iz >= nz - 2 || nx < 5) {
+    hindered.setOnes();
+    return;
+  }
+  hindered.head(2).setOnes();
+  hindered.tail(2).setOnes();
+  const FlagBits* here = &flags(iz, 0);
+  for (Index ix = 2; ix < nx - 2; ++ix) {
+    hindered[ix] = static_cast<FlagBits>(here[ix] | here[ix - 1] | here[ix + 1] | here[ix - 2] |
+                                         here[ix + 2] | here[ix - nx] | here[ix + nx] |
+                                         here[ix - 2 * nx] | here[ix + 2 * nx]);
+  }
+}
+
+/// The smaller of a pixel's steps along x and z; -1 where either is missing.
+double careful_step(const ChannelMap& map, Index iz, Index ix) {
+  if (map.flags(iz, ix) != 0) return -1.0;
+  const double along_x = step_along(map, iz, ix, 0, 1);
+  if (along_x < 0.0) return -1.0;
+  const double along_z = step_along(map, iz, ix, 1, 0);
+  return along_z < 0.0 ? -1.0 : std::min(along_x, along_z);
+}
+
+/// (nz, nx) step of every pixel, -1 where there is none.
+Array2 all_steps(const ChannelMap& map) {
+  Array2 steps(map.grid.nz, map.grid.nx);
+  Flags1 hindered(map.grid.nx);
+  for (Index iz = 0; iz < map.grid.nz; ++iz) {
+    find_hindered(map.flags, iz, hindered);
+    if ((hindered == 0).any()) plain_steps(map.height, iz, steps);
+    for (Index ix = 0; ix < map.grid.nx; ++ix) {
+      if (hindered[ix] != 0) steps(iz, ix) = careful_step(map, iz, ix);
+    }
+  }
+  return steps;
+}
+
 /// Upper decile of the steps of the 7 x 7 pixels around: a clamped corner fills a quarter of them.
 double local_step(const Array2& steps, Index iz, Index ix) {
   constexpr Index kReach = 3;
@@ -65,17 +120,7 @@ Index flag_spikes(ChannelMap& map, Length noise, double threshold) {
   // White noise has a decile of 1.1: there the noise itself decides.
   constexpr double kMargin = 1.3;
   const double floor = threshold * noise.si();
-  Array2 steps = Array2::Constant(map.grid.nz, map.grid.nx, -1.0);
-  for (Index iz = 0; iz < map.grid.nz; ++iz) {
-    for (Index ix = 0; ix < map.grid.nx; ++ix) {
-      if (map.flags(iz, ix) != 0) continue;
-      const double along_x = step_along(map, iz, ix, 0, 1);
-      if (along_x < 0.0) continue;
-      const double along_z = step_along(map, iz, ix, 1, 0);
-      if (along_z < 0.0) continue;
-      steps(iz, ix) = std::min(along_x, along_z);
-    }
-  }
+  const Array2 steps = all_steps(map);
   Index found = 0;
   for (Index iz = 0; iz < map.grid.nz; ++iz) {
     for (Index ix = 0; ix < map.grid.nx; ++ix) {

@@ -51,11 +51,10 @@ RimPlane fit_rim_plane(const ChannelMap& map, const Flags2& rim, const std::stri
 }
 
 void subtract_plane(ChannelMap& map, const RimPlane& plane) {
+  Array1 on_centre_line(map.grid.nx);
+  for (Index ix = 0; ix < map.grid.nx; ++ix) on_centre_line[ix] = plane.height(map.grid.x(ix), 0.0);
   for (Index iz = 0; iz < map.grid.nz; ++iz) {
-    const double z = map.grid.z(iz);
-    for (Index ix = 0; ix < map.grid.nx; ++ix) {
-      map.height(iz, ix) -= plane.height(map.grid.x(ix), z);
-    }
+    map.height.row(iz) -= on_centre_line.transpose() + plane.tilt_z * map.grid.z(iz);
   }
 }
 

@@ -8,7 +8,8 @@
 namespace manoscope::maps {
 namespace {
 
-/// 1 + 2 sum rho_k along one axis: step_x, step_z is (1, 0) or (0, 1).
+/// 1 + 2 sum rho_k along one axis: step_x, step_z is (1, 0) or (0, 1). Heights that are not good
+/// are 0.
 double correlation_length(const Array2& height, const Flags2& good, Index step_x, Index step_z) {
   constexpr Index kMostLags = 50;
   double length = 1.0, variance = 0.0;
@@ -18,12 +19,10 @@ double correlation_length(const Array2& height, const Flags2& good, Index step_x
     double sum = 0.0;
     Index pairs = 0;
     for (Index iz = 0; iz < nz; ++iz) {
-      for (Index ix = 0; ix < nx; ++ix) {
-        const Index jz = iz + lag * step_z, jx = ix + lag * step_x;
-        if (good(iz, ix) == 0 || good(jz, jx) == 0) continue;
-        sum += height(iz, ix) * height(jz, jx);
-        ++pairs;
-      }
+      const Index jz = iz + lag * step_z, jx = lag * step_x;
+      sum += (height.row(iz).head(nx) * height.row(jz).segment(jx, nx)).sum();
+      const FlagBits *here = &good(iz, 0), *there = &good(jz, jx);
+      for (Index ix = 0; ix < nx; ++ix) pairs += here[ix] & there[ix];
     }
     if (pairs == 0) break;
     const double covariance = sum / static_cast<double>(pairs);
@@ -53,13 +52,17 @@ PixelNoise measure_noise(const ChannelMap& leveled, const Flags2& rim) {
   if (heights.empty()) return noise;
   const double sigma = numerics::mad_sigma(heights, 0.0);
   noise.sigma = Length::from_si(sigma);
-  Flags2 good = Flags2::Zero(rim.rows(), rim.cols());
+  Flags2 good(rim.rows(), rim.cols());
+  Array2 height(rim.rows(), rim.cols());
   for (Index i = 0; i < rim.size(); ++i) {
-    good.data()[i] = rim.data()[i] != 0 && leveled.flags.data()[i] == 0 &&
-                     std::abs(leveled.height.data()[i]) <= kOutlier * sigma;
+    const double value = leveled.height.data()[i];
+    const bool counts =
+        rim.data()[i] != 0 && leveled.flags.data()[i] == 0 && std::abs(value) <= kOutlier * sigma;
+    good.data()[i] = counts ? 1 : 0;
+    height.data()[i] = counts ? value : 0.0;
   }
-  noise.length_x = correlation_length(leveled.height, good, 1, 0);
-  noise.length_z = correlation_length(leveled.height, good, 0, 1);
+  noise.length_x = correlation_length(height, good, 1, 0);
+  noise.length_z = correlation_length(height, good, 0, 1);
   return noise;
 }
 

@@ -34,35 +34,64 @@ void integrate_between(Node& a, Node& b, double low, double high) {
   b.weight += (to - from) * middle;
 }
 
-std::optional<ColumnAverage> average_column(const DeflectionMap& map, Index ix, double width,
-                                            const WidthAverageOptions& options) {
+/// Columns of a map side by side with their rows, a few at a time: a column of a row-major map is
+/// scattered over memory.
+class ColumnWindow {
+ public:
+  explicit ColumnWindow(const DeflectionMap& map)
+      : map_(map), zeta_(kColumns, map.grid().nz), flags_(kColumns, map.grid().nz) {}
+
+  void move_to(Index ix) {
+    if (ix >= first_ && ix < first_ + kColumns) return;
+    first_ = ix;
+    const Index n = std::min(kColumns, map_.grid().nx - ix);
+    for (Index iz = 0; iz < map_.grid().nz; ++iz) {
+      for (Index k = 0; k < n; ++k) {
+        zeta_(k, iz) = map_.zeta()(iz, ix + k);
+        flags_(k, iz) = map_.flags()(iz, ix + k);
+      }
+    }
+  }
+  double zeta(Index iz, Index ix) const { return zeta_(ix - first_, iz); }
+  FlagBits flags(Index iz, Index ix) const { return flags_(ix - first_, iz); }
+
+ private:
+  static constexpr Index kColumns = 8;
+  const DeflectionMap& map_;
+  Index first_ = -kColumns;
+  Array2 zeta_;
+  Flags2 flags_;
+};
+
+/// @param nodes  work space.
+std::optional<ColumnAverage> average_column(const DeflectionMap& map, const ColumnWindow& window,
+                                            Index ix, double width,
+                                            const WidthAverageOptions& options,
+                                            std::vector<Node>& nodes) {
   const ChannelGrid& grid = map.grid();
   const double half = 0.5 * width, pitch = grid.pitch_z.si();
-  std::vector<Node> nodes;
-  Index inside = 0;
+  const Node edge_below{-half, 0.0, 0.0, false}, edge_above{half, 0.0, 0.0, false};
+  nodes.assign(1, edge_below);
   std::optional<Node> below, above;
   for (Index iz = 0; iz < grid.nz; ++iz) {
-    if (map.flags()(iz, ix) != 0) continue;
+    if (window.flags(iz, ix) != 0) continue;
     const double z = grid.z(iz);
-    const Node node{z, map.zeta()(iz, ix), 0.0, true};
+    const Node node{z, window.zeta(iz, ix), 0.0, true};
     if (z <= -half) {
       below = node;
     } else if (z < half) {
       nodes.push_back(node);
-      ++inside;
-    } else if (!above) {
+    } else {
       above = node;
+      break;
     }
   }
-  const double present = static_cast<double>(inside) * pitch / width;
-  if (nodes.empty() || present < options.smallest_coverage) return std::nullopt;
+  const auto inside = static_cast<double>(nodes.size() - 1);
+  if (inside == 0.0 || inside * pitch / width < options.smallest_coverage) return std::nullopt;
   // Beyond the edges: the pixel next door, or the clamped edge itself where that one is missing.
   const double next_door = 1.5 * pitch;
-  nodes.insert(nodes.begin(), below && nodes.front().z - below->z < next_door
-                                  ? *below
-                                  : Node{-half, 0.0, 0.0, false});
-  nodes.push_back(above && above->z - nodes.back().z < next_door ? *above
-                                                                 : Node{half, 0.0, 0.0, false});
+  if (below && nodes[1].z - below->z < next_door) nodes.front() = *below;
+  nodes.push_back(above && above->z - nodes.back().z < next_door ? *above : edge_above);
 
   const double largest_gap = std::max(options.largest_gap * width, 2.5 * pitch);
   for (std::size_t i = 1; i < nodes.size(); ++i) {
@@ -124,10 +153,13 @@ Profile width_average(const DeflectionMap& map, const RimPlane& plane, Length ch
   profile.flags = Flags1::Zero(n);
   profile.uncertainty.independent = Array1::Zero(n);
   Matrix design = Matrix::Zero(n, 3);
+  ColumnWindow window(map);
+  std::vector<Node> nodes;
   for (Index i = 0; i < n; ++i) {
     const Index ix = columns[static_cast<std::size_t>(i)];
     profile.x[i] = grid.x(ix);
-    const auto column = average_column(map, ix, channel_width.si(), options);
+    window.move_to(ix);
+    const auto column = average_column(map, window, ix, channel_width.si(), options, nodes);
     if (!column) {
       profile.flags[i] = StationFlag::no_data;
       continue;

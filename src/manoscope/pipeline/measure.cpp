@@ -49,6 +49,14 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
   inversion::flag_outside(found.reading, found.section);
   found.intersections = inversion::find_intersections(curves.levels, run.profile, channel.width,
                                                       options.intersections);
+  if (found.section) {
+    // At the clamped ends every profile meets every other: no reading (Ozsun et al. 2013, sec. III
+    // C).
+    std::erase_if(found.intersections, [&](const inversion::Intersection& crossing) {
+      return crossing.x.si() < found.reading.x[found.section->first] ||
+             crossing.x.si() > found.reading.x[found.section->last];
+    });
+  }
   found.reynolds = validation::mean_reynolds(channel, fluid, run.flow_rate, run.profile);
   found.channel_resistance_drop =
       validation::channel_resistance_drop(channel, fluid, run.flow_rate, run.profile).si();

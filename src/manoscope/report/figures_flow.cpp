@@ -12,6 +12,14 @@ namespace {
 
 using results::Measurement;
 
+/// Transducer reading minus the parasitic part; the whole reading where that is not known.
+Array1 without_parasitic(const Measurement& m) {
+  return Array1::NullaryExpr(m.transducer_drop.size(), [&](Index run) {
+    const double parasitic = m.parasitic_drop(run);
+    return m.transducer_drop(run) - (std::isnan(parasitic) ? 0.0 : parasitic);
+  });
+}
+
 /// Draws everything of fig. 2(a) into the present panel.
 void draw_drops(PlotScript& script, const Measurement& m, const ReportUnits& units, bool titled) {
   const auto runs = runs_by_flow_rate(m);
@@ -19,7 +27,7 @@ void draw_drops(PlotScript& script, const Measurement& m, const ReportUnits& uni
   const auto drop = [&](const Array1& values) -> Array1 {
     return at(values, runs) / units.drop.si;
   };
-  const Array1 expanded = coverage_factor(m.coverage) * drop(m.extracted_drop_uncertainty);
+  const Array1 expanded = kExpansion * drop(m.extracted_drop_uncertainty);
   const Array1 transducer = drop(m.transducer_drop), parasitic = drop(m.parasitic_drop);
   const Array1 uncorrected = Array1::NullaryExpr(
       Q.size(), [&](Index i) { return std::isnan(parasitic(i)) ? transducer(i) : std::nan(""); });
@@ -71,10 +79,9 @@ std::optional<Figure> pressure_drop(const Measurement& m) {
   script.plot();
   if (!script.has_content()) return std::nullopt;
   const auto x_axis = axis_around("x", {m.flow_rate}, units.flow_rate.si);
-  const auto y_axis = axis_around("y",
-                                  {m.extracted_drop, m.resistance_drop, m.channel_resistance_drop,
-                                   m.transducer_drop - m.parasitic_drop},
-                                  units.drop.si);
+  const auto y_axis = axis_around(
+      "y", {m.extracted_drop, m.resistance_drop, m.channel_resistance_drop, without_parasitic(m)},
+      units.drop.si);
   if (!x_axis.empty() && !y_axis.empty()) {
     script.set("unset key\nset offsets 0, 0, 0, 0");
     script.set(x_axis).set(y_axis);
@@ -85,11 +92,11 @@ std::optional<Figure> pressure_drop(const Measurement& m) {
   return Figure{
       "fig2a_pressure_drop",
       "Pressure drop against flow rate",
-      "Pressure drop against flow rate on linear (left) and logarithmic axes (right). Blue: "
-      "Δp_e between the ends of the test section, read off the wall, with its expanded "
-      "uncertainty; dashed: flow rate times hydraulic resistance R of the measured gap over the "
-      "same section. Red: what the transducer gives for the whole channel, beside QR of the "
-      "whole channel (dotted). As fig. 2(a) of Ozsun et al. (2013).",
+      "Pressure drop against flow rate on linear (left) and logarithmic axes (right). Blue: Δp_e "
+      "between the ends of the test section, read off the wall, with its expanded uncertainty; "
+      "dashed: flow rate times hydraulic resistance R of the measured gap over the same section. "
+      "Red: what the transducer gives for the whole channel, beside QR of the whole channel "
+      "(dotted). As fig. 2(a) of Ozsun et al. (2013).",
       900,
       440,
       script.text()};
@@ -130,10 +137,9 @@ std::optional<Figure> flow_profiles(const Measurement& m) {
 std::optional<Figure> drop_agreement(const Measurement& m) {
   const ReportUnits units = report_units(m);
   const auto runs = runs_by_flow_rate(m);
-  const double k = coverage_factor(m.coverage);
   const Array1 extracted = at(m.extracted_drop, runs), calculated = at(m.resistance_drop, runs);
-  const Array1 u_extracted = k * at(m.extracted_drop_uncertainty, runs);
-  const Array1 u_calculated = k * at(m.resistance_drop_uncertainty, runs);
+  const Array1 u_extracted = kExpansion * at(m.extracted_drop_uncertainty, runs);
+  const Array1 u_calculated = kExpansion * at(m.resistance_drop_uncertainty, runs);
   double high = 0.0, low = 0.0;
   for (Index i = 0; i < extracted.size(); ++i) {
     for (const double end : {extracted(i) + u_extracted(i), extracted(i) - u_extracted(i),

@@ -26,7 +26,7 @@ Crossings crossings_of(const Measurement& m, Index run) {
     if (m.crossing_run[i] == run) own.push_back(static_cast<Index>(i));
   }
   return {at(m.crossing_x, own), at(m.crossing_pressure, own),
-          coverage_factor(m.coverage) * at(m.crossing_x_uncertainty, own)};
+          kExpansion * at(m.crossing_x_uncertainty, own)};
 }
 
 /// Deflection of a run at any x, by a straight line between stations; NaN beside a gap.
@@ -71,6 +71,33 @@ void shade_test_section(PlotScript& script, const Measurement& m, Index run,
                   plain(start / units.x.si), plain(end / units.x.si)));
 }
 
+/// "[low:high]" of the pressures that matter in the figure: the intervals in the test section and
+/// what QR gives. Near the ends, where the wall hardly answers, intervals may be far wider: they
+/// are cut.
+std::string pressure_range(const Measurement& m, const std::vector<Index>& runs, double unit) {
+  double low = 0.0, high = 0.0;
+  const auto include = [&](double value) {
+    if (!std::isfinite(value)) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  };
+  for (const Index run : runs) {
+    for (Index ix = 0; ix < m.x.size(); ++ix) {
+      include(m.resistance_pressure(run, ix));
+      if (!std::isgreaterequal(m.x(ix), m.test_section(run, 0)) ||
+          !std::islessequal(m.x(ix), m.test_section(run, 1))) {
+        continue;
+      }
+      include(m.pressure_lower(run, ix));
+      include(m.pressure_upper(run, ix));
+    }
+  }
+  if (high <= low) return "[*:*]";
+  const double room = 0.08 * (high - low);
+  return fmt::format("[{}:{}]", plain((low < 0.0 ? low - room : 0.0) / unit),
+                     plain((high + room) / unit));
+}
+
 void draw_linear_fit(PlotScript& script, const Measurement& m, Index run, const ReportUnits& units,
                      const DisplayUnit& pressure) {
   const auto fit = linear_fit(m, run);
@@ -86,8 +113,7 @@ void draw_linear_fit(PlotScript& script, const Measurement& m, Index run, const 
 
 std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure figure) {
   const ReportUnits units = report_units(m);
-  const DisplayUnit unit = pressure_unit(std::max(
-      largest_magnitude(row(m.pressure, run)), largest_magnitude(row(m.resistance_pressure, run))));
+  const DisplayUnit unit = pressure_unit(largest_magnitude(row(m.pressure, run)));
   PlotScript script;
   script.set(common_settings());
   script.set("set key maxrows 3 width -9 font ',13'");
@@ -97,6 +123,7 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
                          units.deflection.name, kRed));
   script.set("set ytics nomirror\nset y2tics in scale 0.8");
   script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  script.set("set yrange " + pressure_range(m, {run}, unit.si));
   shade_test_section(script, m, run, units);
   const Array1 x = thinned(m.x) / units.x.si;
   script.draw(script.add_data({x, row(m.deflection, run) / units.deflection.si}),
@@ -127,14 +154,11 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
   figure.title = "Pressure along the channel at " + flow_rate_label(m, run, units);
   figure.caption = fmt::format(
       "Gauge pressure p(x) at {} read off the wall (blue) with its {:.3g} % interval; circles: "
-      "where the "
-      "flow profile crosses a static profile of known pressure. Dashed: what the hydraulic "
-      "resistance of "
-      "the measured gap gives, tied to the reading at the end of the test section; dotted: "
-      "straight line "
-      "through the reading. Red: deflection. The test section is shaded; a gap in the line is a "
-      "station "
-      "where the wall gives no answer. As fig. 3{} of Ozsun et al. (2013).",
+      "where the flow profile crosses a static profile of known pressure. Dashed: what the "
+      "hydraulic resistance of the measured gap gives, tied to the reading at the end of the "
+      "test section; dotted: straight line through the reading. Red: deflection. The test "
+      "section is shaded; a gap in the line is a station where the wall gives no answer. Near "
+      "the ends the interval may leave the frame. As fig. 3{} of Ozsun et al. (2013).",
       flow_rate_label(m, run, units), 100.0 * m.coverage, figure.caption);
   figure.width = 640;
   figure.height = 500;
@@ -183,8 +207,8 @@ std::optional<Figure> profiles_overlaid(const Measurement& m) {
       "fig3a_profiles_overlaid",
       "Flow profiles over static profiles",
       "Deflection at the lowest and the highest flow rate (thick) over the static profiles of "
-      "known pressure (grey). Where they cross (circles), the pressure in the flow is that of the "
-      "static profile. As fig. 3(a) of Ozsun et al. (2013).",
+      "known pressure (grey). Where they cross (circles), the pressure in the flow is that of "
+      "the static profile. As fig. 3(a) of Ozsun et al. (2013).",
       640,
       480,
       script.text()};
@@ -219,6 +243,7 @@ std::optional<Figure> pressure_of_all_runs(const Measurement& m) {
   script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
   script.set(fmt::format("set ylabel '{{/:Italic p}} ({})'", unit.name));
   script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  script.set("set yrange " + pressure_range(m, runs, unit.si));
   if (!runs.empty()) shade_test_section(script, m, runs.back(), units);
   const Array1 x = thinned(m.x) / units.x.si;
   for (std::size_t i = runs.size(); i-- > 0;) {

@@ -112,9 +112,9 @@ std::optional<Figure> static_profiles(const Measurement& m) {
   return Figure{
       "fig1d_static_profiles",
       "Static deflection profiles",
-      "Width-averaged deflection ζ(x) of the wall at each known uniform pressure, outlet "
-      "closed. These are the local constitutive curves. Labels give the gauge pressure; a "
-      "negative deflection points into the channel. As fig. 1(d) of Ozsun et al. (2013).",
+      "Width-averaged deflection ζ(x) of the wall at each known uniform pressure, outlet closed. "
+      "These are the local constitutive curves. Labels give the gauge pressure; a negative "
+      "deflection points into the channel. As fig. 1(d) of Ozsun et al. (2013).",
       640,
       480,
       script.text()};
@@ -125,7 +125,7 @@ std::optional<Figure> crest_deflection(const Measurement& m) {
   const DisplayUnit length = length_unit(largest_magnitude(m.crest_deflection));
   const Array1 p = m.level_pressure / units.pressure.si;
   const Array1 z = m.crest_deflection / length.si;
-  const Array1 expanded = coverage_factor(m.coverage) * m.crest_deflection_uncertainty / length.si;
+  const Array1 expanded = kExpansion * m.crest_deflection_uncertainty / length.si;
   PlotScript script;
   script.set(common_settings())
       .set("unset key")
@@ -147,9 +147,9 @@ std::optional<Figure> crest_deflection(const Measurement& m) {
       "Crest deflection against pressure",
       "Deflection ζ_p at mid-channel on the centre line against the applied pressure: left on "
       "linear axes, right on logarithmic ones, where only positive values can be shown. A "
-      "stretching membrane follows the slope 1/3, a plate or a tense membrane the slope 1. "
-      "Bars: expanded uncertainty, mostly smaller than the symbols. As fig. 1(e), (f) of Ozsun "
-      "et al. (2013).",
+      "stretching membrane follows the slope 1/3, a plate or a tense membrane the slope 1. Bars: "
+      "expanded uncertainty, mostly smaller than the symbols. As fig. 1(e), (f) of Ozsun et al. "
+      "(2013).",
       900,
       420,
       script.text()};

@@ -129,9 +129,9 @@ std::string facts_list(const Measurement& m) {
 std::string runs_table(const Measurement& m) {
   if (m.run.empty()) return {};
   const ReportUnits units = report_units(m);
-  const double k = coverage_factor(m.coverage);
   const auto drop = [&](double value, double uncertainty) {
-    return number_text_with_uncertainty(value / units.drop.si, k * uncertainty / units.drop.si);
+    return number_text_with_uncertainty(value / units.drop.si,
+                                        kExpansion * uncertainty / units.drop.si);
   };
   std::string body;
   for (std::size_t i = 0; i < m.run.size(); ++i) {
@@ -142,6 +142,7 @@ std::string runs_table(const Measurement& m) {
             cell(drop(m.extracted_drop(run), m.extracted_drop_uncertainty(run))) +
             cell(drop(m.resistance_drop(run), m.resistance_drop_uncertainty(run))) +
             cell(number_text(m.en_number(run), 2)) + cell(verdict(m.en_number(run))) +
+            cell(number_text(m.transducer_drop(run) / units.drop.si, 4)) +
             cell(number_text((m.transducer_drop(run) - m.parasitic_drop(run)) / units.drop.si, 4)) +
             cell(number_text(m.channel_resistance_drop(run) / units.drop.si, 4)) +
             cell(fmt::format("{} to {}", short_number_text(m.test_section(run, 0) / units.x.si),
@@ -153,16 +154,17 @@ std::string runs_table(const Measurement& m) {
       column_head("Re") + column_head(fmt::format("Δ<i>p</i><sub>e</sub> ({})", units.drop.name)) +
       column_head(fmt::format("<i>QR</i> ({})", units.drop.name)) +
       column_head("<i>E</i><sub>n</sub>") + column_head("<i>QR</i> and Δ<i>p</i><sub>e</sub>") +
+      column_head(fmt::format("Transducer ({})", units.drop.name)) +
       column_head(fmt::format("Transducer − parasitic ({})", units.drop.name)) +
       column_head(fmt::format("<i>QR</i>, whole channel ({})", units.drop.name)) +
       column_head(fmt::format("Test section ({})", units.x.name)) + column_head("Read");
   return table(
       fmt::format(
-          "Pressure drops over the test section ± expanded uncertainty ({:.3g} %, k = {:.2f}). "
+          "Pressure drops over the test section ± expanded uncertainty (k = {:.0f}, about 95 %). "
           "Δp<sub>e</sub>: read off the wall. QR: flow rate times hydraulic resistance of the "
           "measured gap. They agree where E<sub>n</sub> ≤ 1. Read: share of the test section's "
           "stations where the wall gives an answer.",
-          100.0 * m.coverage, k),
+          kExpansion),
       head, body);
 }
 
@@ -196,8 +198,7 @@ std::string budget_table(const Measurement& m) {
   }
   return table(
       "Standard uncertainty u(p) of the pressure near the middle of the test section, and the "
-      "share of "
-      "each source in its square.",
+      "share of each source in its square.",
       head, body);
 }
 

@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
-
-#include "manoscope/core/error.hpp"
 
 namespace manoscope::report {
 namespace {
@@ -58,16 +55,6 @@ DisplayUnit flow_rate_unit(double largest) {
                           {1e-3 * kMilliliterPerMinute, "µL/min"},
                           {kMilliliterPerMinute, "mL/min"},
                           {1e3 * kMilliliterPerMinute, "L/min"}});
-}
-
-double coverage_factor(double coverage) {
-  MANO_ASSERT(coverage > 0.0 && coverage < 1.0);
-  double low = 0.0, high = 40.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (std::erf(middle / std::numbers::sqrt2) < coverage ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 std::string number_text(double value, int digits) {

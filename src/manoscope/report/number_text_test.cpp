@@ -62,12 +62,5 @@ TEST(NumberText, ChoosesAUnitThatKeepsNumbersShort) {
   EXPECT_EQ(flow_rate_unit(50e-9 / 60.0).name, "µL/min");
 }
 
-TEST(NumberText, KnowsTheCoverageFactorsOfTheNormalDistribution) {
-  // Tabulated quantiles, to the digits of the tables.
-  EXPECT_NEAR(coverage_factor(0.95), 1.959964, 1e-6);
-  EXPECT_NEAR(coverage_factor(0.6826895), 1.0, 1e-6);
-  EXPECT_NEAR(coverage_factor(0.9973002), 3.0, 1e-6);
-}
-
 }  // namespace
 }  // namespace manoscope::report

@@ -210,7 +210,7 @@ TEST(Report, ManagesWithLittleOrBrokenData) {
 TEST(Report, ShowsADropWithItsExpandedUncertainty) {
   auto measurement = example_measurement({.n_x = 40, .n_levels = 5, .n_runs = 1});
   measurement.extracted_drop(0) = 14234.9;
-  measurement.extracted_drop_uncertainty(0) = 59.3;  // times 1.96: 116
+  measurement.extracted_drop_uncertainty(0) = 59.3;  // times 2: 119
   measurement.en_number(0) = 1.7;
   const std::string page = page_of(make_report(measurement));
   EXPECT_NE(page.find("<td>14.23 ± 0.12</td>"), std::string::npos);

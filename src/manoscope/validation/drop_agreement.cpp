@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "manoscope/core/error.hpp"
@@ -130,7 +131,8 @@ DropAgreement compare_drops(const flow::Channel& channel, const flow::Fluid& flu
   constexpr double kExpansion = 2.0;
   const double expanded = kExpansion * std::sqrt(std::max(0.0, variance));
   const double difference = std::abs(agreement.extracted.value - agreement.resistance.value);
-  agreement.en_number = expanded > 0.0 ? difference / expanded : 0.0;
+  agreement.en_number =
+      expanded > 0.0 ? difference / expanded : std::numeric_limits<double>::quiet_NaN();
   return agreement;
 }
 
@@ -152,17 +154,20 @@ Array1 resistance_pressure(const flow::Channel& channel, const flow::Fluid& flui
                            FlowRate flow_rate, const Profile& state,
                            const inversion::PressureReading& reading,
                            const inversion::TestSection& section) {
-  // Between good stations the gap is taken as straight, as in the drop itself.
+  // Between good stations r is taken as straight, as in the drop itself.
   const GoodStations good = with_clamped_ends(state, channel.length.si());
   const Array1 running =
       flow::running_resistance_drop(channel, fluid.viscosity, flow_rate, good.x, good.zeta);
+  const Array1 gap = channel.height.si() + good.zeta;
+  const Array1 fall =
+      flow_rate.si() * flow::duct_resistance(fluid.viscosity, channel.width, gap);
   const auto drop_to = [&](double x) {
     const auto* const begin = good.x.data();
     const auto* const end = begin + good.x.size();
     const auto* const above = std::upper_bound(begin + 1, end - 1, x);
     const Index i = above - begin - 1;
-    const double share = (x - good.x[i]) / (good.x[i + 1] - good.x[i]);
-    return running[i] + share * (running[i + 1] - running[i]);
+    const double step = x - good.x[i], share = step / (good.x[i + 1] - good.x[i]);
+    return running[i] + step * (fall[i] + 0.5 * share * (fall[i + 1] - fall[i]));
   };
   const double end_drop = drop_to(state.x[section.last]);
   Array1 pressure(state.x.size());

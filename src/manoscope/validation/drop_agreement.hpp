@@ -15,7 +15,8 @@ struct DropAgreement {
   Estimate extracted;   ///< Pa, dp_e = p(x_start) - p(x_end) off the wall
   Estimate resistance;  ///< Pa, Q R over the same stretch
   /// |dp_e - QR| over its expanded uncertainty (k = 2), the errors both share accounted for: the
-  /// E_n number of ISO/IEC 17043; agreement where it is at most 1.
+  /// E_n number of ISO/IEC 17043; agreement where it is at most 1. NaN where no uncertainty at all
+  /// is stated, for then there is no verdict.
   double en_number = 0.0;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "manoscope/calibration/fit_curves.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/core/flags.hpp"
 #include "manoscope/core/random.hpp"
 #include "manoscope/flow/channel_resistance.hpp"
 #include "tests/support/local_wall.hpp"
@@ -33,14 +35,15 @@ double resistance_by_hand(double gap) {
 
 /// One standard deviation of each kind of error of a map.
 struct MapErrors {
-  double noise, plane, shift;  // m, of one column; of offset and of tilt; along x
+  double noise, offset, tilt, shift;  // m: of one column; of the plane, in the middle and at the
+                                      // ends; along x
 };
 
 /// One experiment on a wall whose answer is local, with the errors of one seed (0 = none).
 struct Trial {
   LocalWall wall;
   Array1 x = wall.stations(kStations);
-  MapErrors level_errors{2e-9, 2e-9, 1e-6}, flow_errors{2e-9, 2e-9, 1e-6};
+  MapErrors level_errors{2e-9, 2e-9, 2e-9, 1e-6}, flow_errors = level_errors;
   double label = 10.0, gain = 0.0, zero = 0.0;  // Pa, relative, Pa
   std::uint64_t seed = 0;
 
@@ -66,8 +69,8 @@ struct Trial {
       result.zeta += draw() * effect;
       result.uncertainty.modes.push_back({what + name, source, effect});
     };
-    share("level plane, offset, ", "leveling", Array1::Constant(n, errors.plane));
-    share("level plane, tilt, ", "leveling", errors.plane * Array1::LinSpaced(n, -1.0, 1.0));
+    share("level plane, offset, ", "leveling", Array1::Constant(n, errors.offset));
+    share("level plane, tilt, ", "leveling", errors.tilt * Array1::LinSpaced(n, -1.0, 1.0));
     share("shift of ", "registration", errors.shift * slope);
     return result;
   }
@@ -97,8 +100,9 @@ struct Trial {
 };
 
 DropAgreement compare(const PressureReading& reading, const Profile& state, FlowRate flow_rate,
-                      const flow::Channel& channel = kChannel) {
-  return compare_drops(channel, kWater, flow_rate, kHeightUncertainty, state, reading, kSection);
+                      const flow::Channel& channel = kChannel,
+                      Length height_uncertainty = kHeightUncertainty) {
+  return compare_drops(channel, kWater, flow_rate, height_uncertainty, state, reading, kSection);
 }
 
 /// Sum of the effects of one variable.
@@ -110,11 +114,10 @@ double effect(const Estimate& estimate, const std::string& variable) {
   return sum;
 }
 
-/// Flow rate at which the exact wall resists with exactly its own drop.
-FlowRate matching_flow_rate() {
-  const Trial exact;
+/// Flow rate at which a wall without errors resists with exactly its own drop.
+FlowRate matching_flow_rate(const Trial& exact, const flow::Channel& channel) {
   const Profile state = exact.state();
-  const DropAgreement at_one = compare(exact.reading(state), state, 1.0 * mL_per_min);
+  const DropAgreement at_one = compare(exact.reading(state), state, 1.0 * mL_per_min, channel);
   return at_one.extracted.value / at_one.resistance.value * mL_per_min;
 }
 
@@ -265,18 +268,20 @@ struct MonteCarlo {
 };
 
 /// Whole experiments with every error drawn anew; pulls about the exact drops, which agree.
-MonteCarlo run_trials(Trial trial, int n_trials) {
-  const FlowRate flow_rate = matching_flow_rate();
+MonteCarlo run_trials(Trial trial, int n_trials, const flow::Channel& channel = kChannel,
+                      Length height_uncertainty = kHeightUncertainty) {
   const Trial exact;
+  const FlowRate flow_rate = matching_flow_rate(exact, channel);
   const Profile exact_state = exact.state();
-  const auto truth = compare(exact.reading(exact_state), exact_state, flow_rate);
+  const auto truth = compare(exact.reading(exact_state), exact_state, flow_rate, channel);
   MonteCarlo result;
   for (int i = 1; i <= n_trials; ++i) {
     trial.seed = static_cast<std::uint64_t>(i);
     const Profile state = trial.state();
-    flow::Channel stated = kChannel;
-    stated.height += RandomStream(trial.seed, "height").normal() * kHeightUncertainty;
-    const auto found = compare(trial.reading(state), state, flow_rate, stated);
+    flow::Channel stated = channel;
+    stated.height += RandomStream(trial.seed, "height").normal() * height_uncertainty;
+    const auto found =
+        compare(trial.reading(state), state, flow_rate, stated, height_uncertainty);
     const double u_extracted = found.extracted.standard_uncertainty();
     const double u_resistance = found.resistance.standard_uncertainty();
     const double difference = found.extracted.value - found.resistance.value;
@@ -298,8 +303,7 @@ constexpr double kAgreeing = 0.9545, kAgreeingSlack = 0.030;
 
 TEST(CompareDrops, StatedVariancesAreThoseOfManyExperiments) {
   Trial trial;
-  trial.level_errors = {5e-9, 5e-9, 5e-6};
-  trial.flow_errors = {5e-9, 5e-9, 5e-6};
+  trial.level_errors = trial.flow_errors = {5e-9, 5e-9, 5e-9, 5e-6};
   trial.gain = 0.003;
   trial.zero = 8.0;
   const MonteCarlo found = run_trials(trial, kTrials);
@@ -311,12 +315,13 @@ TEST(CompareDrops, StatedVariancesAreThoseOfManyExperiments) {
 }
 
 TEST(CompareDrops, SharedErrorsOfTheFlowMapWidenTheDifference) {
-  // An outward error of the flow map raises dp_e and lowers QR: the difference feels both.
+  // An outward error of the flow map raises dp_e and lowers QR: the difference feels both, most of
+  // all over a low gap.
   Trial trial;
-  trial.level_errors = {1e-9, 1e-9, 0.1e-6};
-  trial.flow_errors = {1e-9, 60e-9, 1e-6};
-  trial.label = 2.0;
-  const MonteCarlo found = run_trials(trial, kTrials);
+  trial.level_errors = {1e-9, 1e-9, 1e-9, 0.1e-6};
+  trial.flow_errors = {1e-9, 60e-9, 1e-9, 0.1e-6};
+  trial.label = 1.0;
+  const MonteCarlo found = run_trials(trial, kTrials, {15.5 * mm, 1.7 * mm, 60.0 * um}, 0.02 * um);
   EXPECT_LT(found.uncorrelated_ratio, 0.9);  // else this experiment could not tell
   EXPECT_NEAR(found.difference.width(), 1.0, kWidthSlack);
   EXPECT_NEAR(found.difference.mean(), 0.0, kMeanSlack);
@@ -324,7 +329,7 @@ TEST(CompareDrops, SharedErrorsOfTheFlowMapWidenTheDifference) {
 
 TEST(CompareDrops, WithoutAnyUncertaintyHasNoVerdict) {
   Trial exact;
-  exact.level_errors = exact.flow_errors = {0.0, 0.0, 0.0};
+  exact.level_errors = exact.flow_errors = {0.0, 0.0, 0.0, 0.0};
   exact.label = 0.0;
   const Profile state = exact.state();
   const auto found = compare_drops(kChannel, kWater, 10.0 * mL_per_min, Length{}, state,
