@@ -27,14 +27,19 @@ void TestSectionOptions::validate() const {
   }
 }
 
+Stretch wanted_stretch(Length channel_length, Length channel_width,
+                       const TestSectionOptions& options) {
+  const Length clearance = options.clearance / std::numbers::pi * channel_width;
+  return {options.start.value_or(clearance), options.end.value_or(channel_length - clearance)};
+}
+
 std::optional<TestSection> find_test_section(const PressureReading& reading, Length channel_length,
                                              Length channel_width,
                                              const TestSectionOptions& options) {
   options.validate();
   const double length = channel_length.si();
-  const double clearance = options.clearance * channel_width.si() / std::numbers::pi;
-  const double start = options.start ? options.start->si() : clearance;
-  const double end = options.end ? options.end->si() : length - clearance;
+  const Stretch wanted = wanted_stretch(channel_length, channel_width, options);
+  const double start = wanted.start.si(), end = wanted.end.si();
 
   std::vector<double> slopes;
   for (Index ix = 0; ix < reading.x.size(); ++ix) {

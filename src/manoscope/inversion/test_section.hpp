@@ -30,6 +30,16 @@ struct TestSection {
   Index first = 0, last = 0;
 };
 
+/// A piece of the channel along x.
+struct Stretch {
+  Length start{}, end{};
+};
+
+/// Where the test section is looked for: between the given ends, else `clearance` decay lengths w/pi
+/// from the clamped ends of the wall.
+Stretch wanted_stretch(Length channel_length, Length channel_width,
+                       const TestSectionOptions& options = {});
+
 /// The stretch of the channel where the wall answers and its clamped ends are not felt.
 ///
 /// A clamped end dies out along a tensioned wall as exp(-pi x / w) (the longest-lived mode of a

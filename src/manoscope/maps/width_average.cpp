@@ -27,6 +27,12 @@ struct ColumnAverage {
 
 /// Adds to both nodes what the line between them contributes to the integral over [low, high].
 void integrate_between(Node& a, Node& b, double low, double high) {
+  if (a.z >= low && b.z <= high) {
+    const double half = 0.5 * (b.z - a.z);
+    a.weight += half;
+    b.weight += half;
+    return;
+  }
   const double from = std::max(a.z, low), to = std::min(b.z, high), length = b.z - a.z;
   if (to <= from) return;
   const double middle = (0.5 * (from + to) - a.z) / length;  // the line's value at the centre
@@ -100,8 +106,9 @@ std::optional<ColumnAverage> average_column(const DeflectionMap& map, const Colu
   }
   ColumnAverage result;
   double noise_gain = 0.0;
+  const double per_width = 1.0 / width;
   for (const Node& node : nodes) {
-    const double weight = node.weight / width;
+    const double weight = node.weight * per_width;
     result.zeta += weight * node.zeta;
     if (!node.measured) continue;
     result.measured += weight;

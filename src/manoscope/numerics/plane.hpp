@@ -11,8 +11,8 @@ struct PlaneFit {
   Eigen::Vector3d coefficient = Eigen::Vector3d::Zero();  ///< c0, c1, c2
   /// Of the coefficients, for white errors of size `sigma`.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  double sigma = 0.0;             ///< robust standard deviation of the residuals
-  double inlier_fraction = 0.0;   ///< share of points within the rejection bound
+  double sigma = 0.0;            ///< robust standard deviation of the residuals
+  double inlier_fraction = 0.0;  ///< share of points within the rejection bound
 };
 
 struct PlanePoint {

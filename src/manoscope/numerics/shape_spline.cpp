@@ -14,27 +14,46 @@ struct Slope {
   std::array<double, 3> derivative{};
 };
 
-/// Slope of the middle of three knots: weighted harmonic mean of the two secants.
+/// Slope of the middle of three knots: that of the parabola u(y) through them, a harmonic mean of
+/// the two secants weighted by the rises, at most three times the smaller.
 Slope middle_slope(const double* u, const double* y) {
-  const double h0 = u[1] - u[0], h1 = u[2] - u[1];
-  const double s0 = (y[1] - y[0]) / h0, s1 = (y[2] - y[1]) / h1;
+  const double h0 = u[1] - u[0], h1 = u[2] - u[1], z0 = y[1] - y[0], z1 = y[2] - y[1];
+  const double s0 = z0 / h0, s1 = z1 / h1;
   Slope slope;
   if (s0 * s1 <= 0.0) return slope;
-  const double w0 = (h0 + 2.0 * h1) / (3.0 * (h0 + h1)), w1 = 1.0 - w0;
-  slope.value = 1.0 / (w0 / s0 + w1 / s1);
-  const double d0 = w0 * (slope.value / s0) * (slope.value / s0);
-  const double d1 = w1 * (slope.value / s1) * (slope.value / s1);
-  slope.derivative = {-d0 / h0, d0 / h0 - d1 / h1, d1 / h1};
+  const double steepness = h0 * z1 / z0 + h1 * z0 / z1;
+  slope.value = (z0 + z1) / steepness;
+  if (std::abs(slope.value) > 3.0 * std::min(std::abs(s0), std::abs(s1))) {
+    if (std::abs(s0) <= std::abs(s1)) return {3.0 * s0, {-3.0 / h0, 3.0 / h0, 0.0}};
+    return {3.0 * s1, {0.0, -3.0 / h1, 3.0 / h1}};
+  }
+  const double by_z0 = (1.0 + slope.value * (h0 * z1 / (z0 * z0) - h1 / z1)) / steepness;
+  const double by_z1 = (1.0 + slope.value * (h1 * z0 / (z1 * z1) - h0 / z0)) / steepness;
+  slope.derivative = {-by_z0, by_z0 - by_z1, by_z1};
   return slope;
 }
 
-/// Slope of the first of three knots (of the last, if they are given in reverse): that of the
-/// parabola through them, between 0 and three times the end secant.
+/// Slope of the first of three knots (of the last, if they are given in reverse), between 0 and
+/// three times the end secant: that of the parabola u(y) through them, which follows a curve that
+/// sets off steeply better than a parabola y(u); of the latter where the curve turns.
 Slope end_slope(double h0, double h1, double y0, double y1, double y2) {
-  const double h = h0 + h1, s0 = (y1 - y0) / h0;
+  const double h = h0 + h1, z0 = y1 - y0, z1 = y2 - y1, z = y2 - y0, s0 = z0 / h0;
   Slope slope;
-  slope.derivative = {-(h0 + h) / (h0 * h), h / (h0 * h1), -h0 / (h1 * h)};
-  slope.value = slope.derivative[0] * y0 + slope.derivative[1] * y1 + slope.derivative[2] * y2;
+  if (z0 * z1 > 0.0) {
+    // du/dy = steepness / z
+    const double steepness = 2.0 * h0 + h0 * z1 / z0 - h1 * z0 / z1;
+    if (steepness * h0 > 0.0) {
+      slope.value = z / steepness;
+      const double by_z0 = (1.0 + slope.value * (h0 * z1 / (z0 * z0) + h1 / z1)) / steepness;
+      const double by_z1 = (1.0 - slope.value * (h0 / z0 + h1 * z0 / (z1 * z1))) / steepness;
+      slope.derivative = {-by_z0, by_z0 - by_z1, by_z1};
+    } else {
+      slope.value = 4.0 * s0;  // vertical or beyond: to be limited
+    }
+  } else {
+    slope.derivative = {-(h0 + h) / (h0 * h), h / (h0 * h1), -h0 / (h1 * h)};
+    slope.value = slope.derivative[0] * y0 + slope.derivative[1] * y1 + slope.derivative[2] * y2;
+  }
   if (slope.value * s0 <= 0.0) return {};
   if (std::abs(slope.value) > 3.0 * std::abs(s0)) {
     return {3.0 * s0, {-3.0 / h0, 3.0 / h0, 0.0}};

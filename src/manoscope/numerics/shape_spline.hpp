@@ -11,12 +11,14 @@ namespace manoscope::numerics {
 /// Cubic Hermite interpolant that keeps the shape of its data: monotone between neighbouring knots
 /// wherever they are, no overshoot, C1.
 ///
-/// The slope at a knot is the weighted harmonic mean of the secants on both sides (Fritsch &
-/// Butland, SIAM J. Sci. Stat. Comput. 5, 300, 1984), 0 at a turning point; at the ends it is that
-/// of the parabola through three knots, kept between 0 and 3 times the end secant. Where a curve
-/// turns from steep to flat within two knots the harmonic mean sides with the flat secant, which
-/// keeps noise of one knot from swinging its neighbours. For smooth monotone data the error is
-/// O(h^3).
+/// The slope at a knot is that of the parabola u(y) through it and its neighbours (as for PCHIP a
+/// harmonic mean of the secants on both sides, here weighted by the rises), at most three times the
+/// smaller secant, 0 at a turning point; the limits are the sufficient ones of Fritsch & Carlson
+/// (SIAM J. Numer. Anal. 17, 238, 1980). The inverse parabola suits curves y(u) whose inverse is a
+/// polynomial, such as the deflection of a stretching wall under pressure: it follows a steep
+/// start, and where a curve turns from steep to flat within two knots it sides with the flat
+/// secant, which keeps noise of one knot from swinging its neighbours. For smooth monotone data the
+/// error is O(h^3).
 class ShapeSpline {
  public:
   /// @param u  knots, strictly ascending, at least 2.
@@ -34,8 +36,8 @@ class ShapeSpline {
   double derivative(double u) const;
 
   /// How far another fair interpolant lies from this one: the same with the slopes of the parabola
-  /// through three knots, limited to three times the smaller secant (Fritsch & Carlson 1980). A measure
-  /// of the interpolation error, signed; 0 at the knots.
+  /// through three knots, limited to three times the smaller secant (Fritsch & Carlson 1980). A
+  /// measure of the interpolation error, signed; 0 at the knots.
   double doubt(double u) const;
 
   /// Every u with value(u) = y, ascending; a flat stretch at y gives its middle.

@@ -103,8 +103,8 @@ TEST(ShapeSpline, DoubtIsOfTheSizeOfTheErrorAndVanishesAtTheKnots) {
     doubt += std::pow(spline.doubt(at), 2);
     error += std::pow(spline.value(at) - std::exp(4.0 * at), 2);
   }
-  // With step h and derivatives y2, y3 the parabola's slope errs by h^2 y3 / 6, the harmonic mean by
-  // h^2 y2^2 / (4 y1) less: for an exponential the doubt is 3 times the error, to leading order.
+  // With step h and derivatives y2, y3 the parabola's slope errs by h^2 y3 / 6, the harmonic mean
+  // by h^2 y2^2 / (4 y1) less: for an exponential the doubt is 3 times the error, to leading order.
   EXPECT_GT(std::sqrt(doubt / error), 1.0);
   EXPECT_LT(std::sqrt(doubt / error), 4.0);
   EXPECT_EQ(spline.doubt(0.25), 0.0);

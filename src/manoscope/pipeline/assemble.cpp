@@ -47,6 +47,13 @@ std::map<std::string, Array1> variance_by_source(const Uncertainty& uncertainty)
 
 void store_budget(const std::vector<RunFindings>& findings, results::Measurement& m) {
   const auto n_runs = static_cast<Index>(findings.size());
+  // A source that a run does not have adds 0 where there is an answer.
+  Array2 nothing(n_runs, m.x.size());
+  for (Index r = 0; r < n_runs; ++r) {
+    const auto& reading = findings[static_cast<std::size_t>(r)].reading;
+    nothing.row(r) =
+        masked(Array1::Zero(m.x.size()), [&](Index i) { return reading.answered(i); });
+  }
   std::map<std::string, std::size_t> place;
   for (Index r = 0; r < n_runs; ++r) {
     const auto& reading = findings[static_cast<std::size_t>(r)].reading;
@@ -54,7 +61,7 @@ void store_budget(const std::vector<RunFindings>& findings, results::Measurement
       const auto [found, is_new] = place.try_emplace(source, m.budget_source.size());
       if (is_new) {
         m.budget_source.push_back(source);
-        m.pressure_variance.push_back(Array2::Zero(n_runs, m.x.size()));
+        m.pressure_variance.push_back(nothing);
       }
       m.pressure_variance[found->second].row(r) =
           masked(variance, [&](Index i) { return reading.answered(i); });

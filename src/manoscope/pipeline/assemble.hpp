@@ -16,6 +16,7 @@ namespace manoscope::pipeline {
 /// All that was found about one run.
 struct RunFindings {
   inversion::PressureReading reading;
+  inversion::Stretch stretch;  ///< where the test section was looked for
   std::optional<inversion::TestSection> section;
   std::vector<inversion::Intersection> intersections;
   std::optional<validation::DropAgreement> agreement;  ///< needs a test section

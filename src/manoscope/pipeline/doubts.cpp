@@ -16,7 +16,7 @@ void doubt_place(const experiment::Experiment& experiment, const maps::FoundPlac
   constexpr double kShare = 0.05;  // of the width: about the size of the end effects of the edges
   const double bound = kShare * experiment.channel.width.si();
   const auto say = [&](const char* what, double misfit, Length stated) {
-    if (!(std::abs(misfit) > bound)) return;
+    if (std::isnan(misfit) || std::abs(misfit) <= bound) return;  // NaN: the place was given
     doubts.push_back(
         fmt::format("The wall moves over a {} of {:.2f} mm, the experiment file says "
                     "{:.2f} mm: check channel.{}",
@@ -65,27 +65,33 @@ void doubt_maps(const experiment::Experiment& experiment, const ReducedExperimen
 
 void doubt_run(const FlowRun& run, const RunFindings& found, Words& doubts) {
   const Flags1& flags = found.reading.flags;
-  const auto count = [&](FlagBits bit, Index first, Index last) {
-    Index n = 0;
-    for (Index i = first; i <= last; ++i) n += (flags[i] & bit) != 0;
-    return n;
-  };
   const Index n = flags.size();
+  const auto count = [&](FlagBits bit) {
+    Index sum = 0;
+    for (Index i = 0; i < n; ++i) sum += (flags[i] & bit) != 0;
+    return sum;
+  };
   if (!found.section) {
-    doubts.push_back(fmt::format(
-        "Run {}: no test section, for hardly a station has an answer "
-        "({} of {} out of calibration, {} ambiguous, {} insensitive)",
-        run.name, count(ReadingFlag::out_of_calibration, 0, n - 1), n,
-        count(ReadingFlag::ambiguous, 0, n - 1), count(ReadingFlag::insensitive, 0, n - 1)));
+    doubts.push_back(
+        fmt::format("Run {}: no test section, for hardly a station has an answer "
+                    "({} of {} out of calibration, {} ambiguous, {} insensitive)",
+                    run.name, count(ReadingFlag::out_of_calibration), n,
+                    count(ReadingFlag::ambiguous), count(ReadingFlag::insensitive)));
     return;
   }
-  const Index first = found.section->first, last = found.section->last;
+  // Not only inside the section: it ends where the last answer is.
   const auto say = [&](FlagBits bit, const char* what) {
-    const Index bad = count(bit, first, last);
+    Index bad = 0, n_wanted = 0;
+    for (Index i = 0; i < n; ++i) {
+      const Length x = Length::from_si(found.reading.x[i]);
+      if (x < found.stretch.start || x > found.stretch.end) continue;
+      ++n_wanted;
+      bad += (flags[i] & bit) != 0;
+    }
     if (bad == 0) return;
-    doubts.push_back(
-        fmt::format("Run {}: {} of {} stations of the test section have no reading, {}", run.name,
-                    bad, last - first + 1, what));
+    doubts.push_back(fmt::format(
+        "Run {}: {} of {} stations between x = {:.2f} and {:.2f} mm have no reading, {}", run.name,
+        bad, n_wanted, found.stretch.start.in(mm), found.stretch.end.in(mm), what));
   };
   say(ReadingFlag::ambiguous, "for more than one pressure fits (buckled wall)");
   say(ReadingFlag::out_of_calibration, "for the deflection is outside the calibrated levels");

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/flow/parasitic.hpp"
@@ -44,6 +45,7 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
 
   RunFindings found;
   found.reading = inversion::read_pressure(curves, run.profile, gauge, options.reading);
+  found.stretch = inversion::wanted_stretch(channel.length, channel.width, options.section);
   found.section =
       inversion::find_test_section(found.reading, channel.length, channel.width, options.section);
   inversion::flag_outside(found.reading, found.section);
@@ -104,6 +106,9 @@ void store_provenance(const Experiment& experiment, const ReducedExperiment& red
         i < n_static ? experiment.hydrostatic[i].name : experiment.flow[i - n_static].name;
     m.inputs += fmt::format("{}  {}\n", name, reduced.hash[i]);
   }
+  if (const auto& reference = experiment.instrument.reference) {
+    m.inputs += fmt::format("{}  {}\n", reference->filename().string(), reduced.reference_hash);
+  }
   m.channel_length = experiment.channel.length.si();
   m.channel_width = experiment.channel.width.si();
   m.channel_height = experiment.channel.height.si();
@@ -120,6 +125,11 @@ void MeasureOptions::validate() const {
   curves.validate();
   reading.validate();
   section.validate();
+  if (intersections.window && *intersections.window <= Length{}) {
+    throw InputError("--crossing-window",
+                     fmt::format("is {:.4g} um", intersections.window->in(um)),
+                     "Give a length above 0, or auto");
+  }
 }
 
 results::Measurement measure(const Experiment& experiment, const MeasureOptions& options,

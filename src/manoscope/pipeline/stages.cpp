@@ -39,6 +39,18 @@ class MapSource {
   std::optional<HeightMap> reference_;
 };
 
+/// One experiment, one camera: stations and the channel's place are those of the first map.
+void require_same_grid(const CameraGrid& first, const std::string& first_name,
+                       const CameraGrid& grid, const std::string& name) {
+  if (grid == first) return;
+  const auto told = [](const CameraGrid& g) {
+    return fmt::format("{} x {} pixels of {:.8g} x {:.8g} um", g.nx, g.ny, g.pitch_x.in(um),
+                       g.pitch_y.in(um));
+  };
+  throw InputError(name, fmt::format("has {}, {} has {}", told(grid), first_name, told(first)),
+                   "Take all maps of one experiment with the same camera settings");
+}
+
 }  // namespace
 
 maps::FoundPlace place_channel(const Experiment& experiment) {
@@ -51,12 +63,14 @@ maps::FoundPlace place_channel(const Experiment& experiment) {
                                channel.flow,   channel.rotation, channel.outward};
   const MapSource source(experiment);
   const HeightMap low = source.read(lowest->map), high = source.read(highest->map);
+  require_same_grid(low.grid(), lowest->name, high.grid(), highest->name);
   std::optional<HeightMap> flowing;
   if (!known.flow && !experiment.flow.empty()) {
     const auto fastest =
         std::max_element(experiment.flow.begin(), experiment.flow.end(),
                          [](const auto& a, const auto& b) { return a.flow_rate < b.flow_rate; });
     flowing = source.read(fastest->map);
+    require_same_grid(low.grid(), lowest->name, flowing->grid(), fastest->name);
   }
   return maps::find_place({&low, &high, flowing ? &*flowing : nullptr}, known,
                           highest->map.string());
@@ -73,14 +87,21 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   ReducedExperiment result;
   result.frame = frame;
   result.hash.resize(files.size());
+  if (experiment.instrument.reference) {
+    result.reference_hash = sha256(read_file(*experiment.instrument.reference));
+  }
+  const std::string& first_name = files.front().second;
+  const CameraGrid first_grid = source.read(files.front().first).grid();
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(files.size()), n_threads, [&](Index i) {
     monitor.checkpoint();
     const auto at = static_cast<std::size_t>(i);
     const auto& [path, name] = files[at];
     result.hash[at] = sha256(read_file(path));
-    reduced[at] = maps::reduce_map(source.read(path), frame, experiment.instrument.height_noise,
-                                   name, options);
+    const HeightMap map = source.read(path);
+    require_same_grid(first_grid, first_name, map.grid(), name);
+    reduced[at] =
+        maps::reduce_map(map, frame, experiment.instrument.height_noise, name, options);
     monitor.report("reducing maps",
                    static_cast<double>(++done) / static_cast<double>(files.size()));
   });

@@ -18,6 +18,7 @@ struct ReducedExperiment {
   ChannelFrame frame;
   std::vector<maps::ReducedMap> hydrostatic, flow;
   std::vector<std::string> hash;  ///< SHA-256 of each map, hydrostatic first
+  std::string reference_hash;     ///< of the instrument's reference map, "" if there is none
 };
 
 /// Where the channel lies: as the experiment says, what it leaves out found from the maps of lowest
@@ -25,6 +26,7 @@ struct ReducedExperiment {
 maps::FoundPlace place_channel(const experiment::Experiment& experiment);
 
 /// Reads and reduces every map.
+/// @throws InputError naming the first map whose pixels differ from those of the first map.
 ReducedExperiment reduce_maps(const experiment::Experiment& experiment, const ChannelFrame& frame,
                               const maps::ReduceOptions& options, int n_threads,
                               const Monitor& monitor);

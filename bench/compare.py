@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Times manoscope against the same work in numpy, in one run, and prints the tables of README.md.
+
+Two workers, one thread each, reduce the same maps in turn, so that both meet the same machine; their
+results must agree, or nothing is printed and the exit code is 1.
+"""
+import argparse
+import json
+import math
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+# Both sides do the same sums in another order, on heights of up to 25 um.
+ZETA_TOLERANCE_M = 1e-14
+UNCERTAINTY_TOLERANCE = 1e-6  # relative
+ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
+                                     "BLIS_NUM_THREADS", "NUMEXPR_NUM_THREADS")}
+
+
+class Worker:
+    """A program that does one order a line and answers with its seconds and peak memory."""
+
+    def __init__(self, *command):
+        self.name = Path(command[-2]).name
+        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, text=True,
+                                        env={**os.environ, **ONE_THREAD})
+
+    def order(self, line):
+        try:
+            self.process.stdin.write(line + "\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            pass
+        answer = self.process.stdout.readline()
+        if not answer:
+            sys.exit(f"{self.name} gave no answer to: {line}")
+        return json.loads(answer)
+
+    def close(self):
+        self.process.stdin.close()
+        if self.process.wait() != 0:
+            sys.exit(f"{self.name} ended with exit code {self.process.returncode}")
+
+
+def largest_difference(ours, theirs, key, relative=False):
+    largest = 0.0
+    for one, other in zip(ours, theirs, strict=True):
+        for a, b in zip(one[key], other[key], strict=True):
+            difference = abs(a - b) / (abs(b) if relative and b else 1.0)
+            largest = difference if math.isnan(difference) else max(largest, difference)
+    return largest
+
+
+def check_agreement(ours, theirs):
+    """Largest differences; ends the run if one is beyond round-off."""
+    for one, other in zip(ours, theirs, strict=True):
+        for key in ("hash", "flags"):
+            if one[key] != other[key]:
+                sys.exit(f"the two sides differ in {key}: a benchmark of wrong results is void")
+    stations = sum(flag == 0 for one in ours for flag in one["flags"])
+    if stations < 0.9 * sum(len(one["flags"]) for one in ours):
+        sys.exit("most stations are flagged: a benchmark of empty results is void")
+    found = {"zeta_m": largest_difference(ours, theirs, "zeta_m"),
+             "uncertainty_relative": largest_difference(ours, theirs, "uncertainty_m", True)}
+    if not (found["zeta_m"] <= ZETA_TOLERANCE_M and
+            found["uncertainty_relative"] <= UNCERTAINTY_TOLERANCE):
+        sys.exit(f"the two sides differ: {found}: a benchmark of wrong results is void")
+    return found
+
+
+def time_reduction(programs, n_maps, repetitions, folder):
+    subprocess.run([programs / "bench_inputs", "maps", folder, str(n_maps)], check=True)
+    inputs = folder / "inputs.json"
+    sides = {"manoscope": Worker(programs / "bench_reduction", inputs),
+             "numpy": Worker(sys.executable, HERE / "reduction.py", inputs)}
+    for worker in sides.values():  # fills the page cache, and whatever each side keeps
+        worker.order("reduce")
+    answers = {name: [] for name in sides}
+    reads = []
+    for _ in range(repetitions):
+        reads.append(sides["manoscope"].order("read")["wall_s"])
+        for name, worker in sides.items():
+            answers[name].append(worker.order("reduce"))
+    results = []
+    for name, worker in sides.items():
+        worker.order(f"save {folder / name}.json")
+        worker.close()
+        results.append(json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))
+    table = {"maps": n_maps, "repetitions": repetitions, "read_s": statistics.median(reads),
+             "largest_difference": check_agreement(*results)}
+    for name, given in answers.items():
+        table[name] = {key: statistics.median(answer[key] for answer in given)
+                       for key in ("wall_s", "cpu_s")}
+        table[name]["peak_MB"] = max(answer["peak_MB"] for answer in given)
+    table["ratio"] = table["numpy"]["wall_s"] / table["manoscope"]["wall_s"]
+    table["ratio_cpu"] = table["numpy"]["cpu_s"] / table["manoscope"]["cpu_s"]
+    return table
+
+
+def run_measured(*command):
+    """Runs a program: wall seconds, processor seconds and peak memory of its largest process."""
+    start = time.perf_counter()
+    process = subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE)
+    message = process.stderr.read().decode()
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        sys.exit(f"{command[0]} failed with exit code {process.returncode}: {message}")
+    return {"wall_s": time.perf_counter() - start, "cpu_s": usage.ru_utime + usage.ru_stime,
+            "peak_MB": usage.ru_maxrss / 1024.0}
+
+
+def time_measure(programs, manoscope, repetitions, folder):
+    experiment, out = folder / "experiment", folder / "result"
+    subprocess.run([programs / "bench_inputs", "experiment", experiment], check=True)
+    table = {"maps": len(list(experiment.glob("*.gsf"))), "repetitions": repetitions}
+    for threads in sorted({1, os.cpu_count() or 1}):
+        runs = [run_measured(manoscope, "measure", experiment, "-o", out, "--threads", threads)
+                for _ in range(repetitions)]
+        table[f"threads_{threads}"] = {key: statistics.median(run[key] for run in runs)
+                                       for key in ("wall_s", "cpu_s", "peak_MB")}
+    judged = subprocess.run([manoscope, "judge", out, experiment / "truth", "--json"], check=True,
+                            capture_output=True, text=True)
+    table["judged"] = json.loads(judged.stdout)
+    return table
+
+
+def print_reduction(table):
+    print(f"\nReduction of {table['maps']} maps of 1024 x 192, from page cache, one thread; "
+          f"median of {table['repetitions']}")
+    print(f"{'':24}{'wall s':>9}{'cpu s':>9}{'ms a map':>10}{'peak MB':>9}")
+    for name in ("manoscope", "numpy"):
+        row = table[name]
+        print(f"{name:24}{row['wall_s']:9.3f}{row['cpu_s']:9.3f}"
+              f"{1e3 * row['wall_s'] / table['maps']:10.2f}{row['peak_MB']:9.1f}")
+    print(f"{'numpy / manoscope':24}{table['ratio']:9.2f}{table['ratio_cpu']:9.2f}")
+    print(f"{'reading the bytes alone':24}{table['read_s']:9.3f}")
+    difference = table["largest_difference"]
+    print(f"largest difference of zeta {difference['zeta_m']:.1g} m, of its uncertainty "
+          f"{difference['uncertainty_relative']:.1g} relative")
+
+
+def print_measure(table):
+    print(f"\nmanoscope measure: {table['maps']} maps of 1024 x 192 to p(x), figures and report; "
+          f"median of {table['repetitions']}")
+    print(f"{'':24}{'wall s':>9}{'cpu s':>9}{'peak MB':>19}")
+    for key, row in table.items():
+        if key.startswith("threads_"):
+            print(f"{key[8:] + ' thread(s)':24}{row['wall_s']:9.3f}{row['cpu_s']:9.3f}"
+                  f"{row['peak_MB']:19.1f}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--programs", type=Path, required=True, help="folder of bench_inputs, ...")
+    parser.add_argument("--manoscope", type=Path, required=True, help="the program")
+    parser.add_argument("--maps", type=int, default=64)
+    parser.add_argument("--repetitions", type=int, default=7)
+    parser.add_argument("--json", type=Path, help="also write every figure here")
+    arguments = parser.parse_args()
+    arguments.manoscope = arguments.manoscope.resolve()
+    arguments.programs = arguments.programs.resolve()
+    with tempfile.TemporaryDirectory(prefix="manoscope-bench-") as name:
+        reduction = time_reduction(arguments.programs, arguments.maps, arguments.repetitions,
+                                   Path(name))
+        print_reduction(reduction)
+        measure = time_measure(arguments.programs, arguments.manoscope,
+                               min(3, arguments.repetitions), Path(name))
+        print_measure(measure)
+    if arguments.json:
+        arguments.json.write_text(json.dumps({"reduction": reduction, "measure": measure},
+                                             indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

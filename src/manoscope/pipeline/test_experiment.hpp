@@ -1,0 +1,98 @@
+// Small virtual experiments on disk, for the tests of this folder.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/experiment/experiment.hpp"
+#include "manoscope/io/writer.hpp"
+#include "manoscope/pipeline/measure.hpp"
+#include "manoscope/twin/experiment_files.hpp"
+#include "manoscope/twin/virtual_experiment.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace manoscope::pipeline {
+
+/// The shipped scenario through a small camera, at two flow rates.
+inline twin::Scenario small_scenario() {
+  twin::Scenario scenario = twin::small_s1();
+  scenario.name = "small";
+  scenario.camera.n_along = 256;
+  scenario.camera.n_across = 64;
+  scenario.solver.steps = 400;
+  scenario.flow_rates = {20.0 * mL_per_min, 70.0 * mL_per_min};
+  return scenario;
+}
+
+/// A virtual experiment whose files can be changed before they are measured.
+class TestExperiment {
+ public:
+  explicit TestExperiment(twin::Scenario made_of = small_scenario(), std::uint64_t seed = 1)
+      : scenario(std::move(made_of)), twin(twin::make_virtual_experiment(scenario, seed)) {}
+
+  twin::Scenario scenario;
+  twin::VirtualExperiment twin;
+
+  /// Replaces a text that must stand in the experiment file exactly once.
+  void replace(const std::string& text, const std::string& by) {
+    replace_in(twin.experiment_toml, text, by);
+  }
+  static void replace_in(std::string& whole, const std::string& text, const std::string& by) {
+    const auto at = whole.find(text);
+    if (at == std::string::npos) throw InternalError("the test finds no \"" + text + "\"");
+    whole.replace(at, text.size(), by);
+  }
+  /// Takes out the line of the experiment file that begins with `key`.
+  void remove_line(const std::string& key) {
+    std::string& toml = twin.experiment_toml;
+    const auto at = toml.find("\n" + key);
+    if (at == std::string::npos) throw InternalError("the test finds no line \"" + key + "\"");
+    toml.erase(at, toml.find('\n', at + 1) - at);
+  }
+  void leave_out_place() {
+    for (const char* key : {"origin", "flow =", "outward"}) remove_line(key);
+  }
+  HeightMap& map(const std::string& name) {
+    for (auto& candidate : twin.maps) {
+      if (candidate.name == name) return candidate.map;
+    }
+    throw InternalError("the test finds no map " + name);
+  }
+  /// One more map of a wall that is known already, with errors of its own.
+  void add_map(const std::string& name, const twin::UniformCurve& deflection,
+               std::uint64_t map_index) {
+    twin.maps.push_back({name, name,
+                         twin::record_map(scenario.channel, deflection, scenario.camera, 99,
+                                          map_index)});
+  }
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+  experiment::Experiment read() {
+    twin::write_experiment(folder(), twin, true);
+    return experiment::read_experiment(folder());
+  }
+  results::Measurement measure(const MeasureOptions& options = {}, int n_threads = 1) {
+    return pipeline::measure(read(), options, n_threads);
+  }
+
+ private:
+  test_support::TemporaryFolder folder_;
+};
+
+/// Whether any of the warnings holds this text.
+inline bool warns_of(const results::Measurement& m, const std::string& text) {
+  for (const std::string& warning : m.warnings) {
+    if (warning.find(text) != std::string::npos) return true;
+  }
+  return false;
+}
+inline std::string all_warnings(const results::Measurement& m) {
+  std::string text;
+  for (const std::string& warning : m.warnings) text += warning + "\n";
+  return text;
+}
+
+}  // namespace manoscope::pipeline
