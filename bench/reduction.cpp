@@ -6,6 +6,7 @@
 //   save FILE   write what the last reduction gave, as JSON
 // Each line is answered by one JSON line: wall and processor seconds, peak resident memory.
 #include <fcntl.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -33,8 +34,8 @@ std::vector<Reduced> reduce_all(const std::vector<std::string>& files, const Cha
   std::vector<Reduced> all;
   for (const std::string& file : files) {
     std::string hash = sha256(read_file(file));
-    all.push_back({std::move(hash),
-                   maps::reduce_map(io::read_height_map(file), frame, std::nullopt, file)});
+    all.push_back(
+        {std::move(hash), maps::reduce_map(io::read_height_map(file), frame, std::nullopt, file)});
   }
   return all;
 }
@@ -115,6 +116,8 @@ void obey(const std::filesystem::path& inputs_file) {
 }  // namespace manoscope::bench
 
 int main(int argc, char** argv) try {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // as the program does, see src/cli/main.cpp
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
   if (argc != 2) throw std::runtime_error("usage: bench_reduction INPUTS.json");
   manoscope::bench::obey(argv[1]);
   return 0;

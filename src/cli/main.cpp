@@ -1,7 +1,17 @@
 // manoscope: the command line. Each command is a file of its own.
 #include "commands.hpp"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 int main(int argc, char** argv) {
+#ifdef __GLIBC__
+  // Maps come and go by the megabyte: handing each back to the system and asking for it again would
+  // cost a quarter of the time of a reduction.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
   manoscope::cli::Program program;
   manoscope::cli::add_demo(program);
   manoscope::cli::add_init(program);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "manoscope/core/uncertainty.hpp"
+
 namespace manoscope::cli {
 namespace {
 
@@ -14,7 +16,6 @@ json number(double value) { return std::isfinite(value) ? json(value) : json(nul
 
 /// "12287 ± 21 Pa" with an expanded uncertainty of two digits, or a dash.
 std::string drop_text(double value, double standard_uncertainty) {
-  constexpr double kExpansion = 2.0;
   if (!std::isfinite(value)) return "-";
   if (!(standard_uncertainty > 0.0)) return fmt::format("{:.0f}", value);
   const double expanded = kExpansion * standard_uncertainty;

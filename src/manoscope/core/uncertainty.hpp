@@ -7,6 +7,10 @@
 
 namespace manoscope {
 
+/// Coverage factor of every expanded uncertainty U = k u that is shown or judged: about 95 % for
+/// normal errors, and what the E_n number of ISO/IEC 17043 takes.
+inline constexpr double kExpansion = 2.0;
+
 /// One error variable shared by many stations: what one standard deviation of it does to each.
 ///
 /// `variable` names the physical error ("level plane of h03.gsf, tilt x", "gauge zero"). The same

@@ -43,7 +43,6 @@ double correlation_length(const Array2& height, const Flags2& good, Index step_x
 PixelNoise measure_noise(const ChannelMap& leveled, const Flags2& rim) {
   constexpr double kOutlier = 5.0;
   std::vector<double> heights;
-  heights.reserve(static_cast<std::size_t>(rim.size()));
   for (Index i = 0; i < rim.size(); ++i) {
     if (rim.data()[i] != 0 && leveled.flags.data()[i] == 0) {
       heights.push_back(leveled.height.data()[i]);

@@ -82,15 +82,12 @@ std::optional<ColumnAverage> average_column(const DeflectionMap& map, const Colu
   for (Index iz = 0; iz < grid.nz; ++iz) {
     if (window.flags(iz, ix) != 0) continue;
     const double z = grid.z(iz);
-    const Node node{z, window.zeta(iz, ix), 0.0, true};
-    if (z <= -half) {
-      below = node;
-    } else if (z < half) {
-      nodes.push_back(node);
-    } else {
-      above = node;
-      break;
+    if (z > -half && z < half) {
+      nodes.emplace_back(z, window.zeta(iz, ix), 0.0, true);
+      continue;
     }
+    (z < 0.0 ? below : above) = Node{z, window.zeta(iz, ix), 0.0, true};
+    if (above) break;
   }
   const auto inside = static_cast<double>(nodes.size() - 1);
   if (inside == 0.0 || inside * pitch / width < options.smallest_coverage) return std::nullopt;

@@ -242,7 +242,10 @@ TEST(Measure, WithoutFlowGivesTheCalibration) {
     // 20 nm over 43 pixels is 3 nm, the plane as much, and 64 pixels across err by d^2/12 of the
     // parabola's edge slopes: 0.1 %.
     const double largest = test.twin.levels[k].deflection.abs().maxCoeff();
-    EXPECT_LT(error.segment(30, 180).abs().maxCoeff(), 25e-9 + 2e-3 * largest) << k;
+    for (Index ix = 30; ix < error.size() - 30; ++ix) {
+      if (std::isnan(error[ix])) continue;  // a station in a gap
+      EXPECT_LT(std::abs(error[ix]), 25e-9 + 2e-3 * largest) << k << " at " << ix;
+    }
   }
 }
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "manoscope/core/uncertainty.hpp"
+
 namespace manoscope::report {
 
 /// A unit to show numbers in, and its size in SI.
@@ -16,9 +18,6 @@ struct DisplayUnit {
 DisplayUnit pressure_unit(double largest);   ///< Pa, kPa, MPa
 DisplayUnit length_unit(double largest);     ///< nm, µm, mm, m
 DisplayUnit flow_rate_unit(double largest);  ///< nL/min, µL/min, mL/min, L/min
-
-/// Factor k of the expanded uncertainty U = k u: about 95 %, as in the E_n number (ISO 13528).
-inline constexpr double kExpansion = 2.0;
 
 /// The number with that many significant digits, without exponent between 1e-4 and 1e7; "–" for a
 /// number that does not exist, and a real minus sign.

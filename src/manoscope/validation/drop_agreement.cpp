@@ -128,7 +128,6 @@ DropAgreement compare_drops(const flow::Channel& channel, const flow::Fluid& flu
   const double variance = std::pow(agreement.extracted.standard_uncertainty(), 2) +
                           std::pow(agreement.resistance.standard_uncertainty(), 2) -
                           2.0 * covariance(agreement.extracted, agreement.resistance);
-  constexpr double kExpansion = 2.0;
   const double expanded = kExpansion * std::sqrt(std::max(0.0, variance));
   const double difference = std::abs(agreement.extracted.value - agreement.resistance.value);
   agreement.en_number =
