@@ -1,4 +1,5 @@
-// The practice experiments: virtual channels made by an independent wall-and-flow model, with truth.
+// The practice experiments: virtual channels made by an independent wall-and-flow model, with
+// truth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,7 +62,8 @@ TEST_P(Practice, ResultFileKeepsTheContractInPython) {
   fs::remove_all(out);
   results::write_result(out, pipeline::measure(experiment::read_experiment(folder_)), {});
   const std::string command = std::string(MANOSCOPE_PYTHON) + " " + MANOSCOPE_SOURCE_DIR +
-                              "/tests/python/result_contract_test.py " + (out / "result.nc").string();
+                              "/tests/python/result_contract_test.py " +
+                              (out / "result.nc").string();
   EXPECT_EQ(std::system(command.c_str()), 0) << command;
   fs::remove_all(out);
 }

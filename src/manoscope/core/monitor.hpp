@@ -8,8 +8,8 @@ namespace manoscope {
 
 /// How long work speaks to whoever started it. Both members may be empty.
 ///
-/// The library itself never prints: the command line shows progress on a terminal, a server sends it
-/// on. Both functions may be called from several threads, one at a time is not promised.
+/// The library itself never prints: the command line shows progress on a terminal, a server sends
+/// it on. Both functions may be called from several threads, one at a time is not promised.
 struct Monitor {
   /// Stage name and the done fraction in [0, 1].
   std::function<void(std::string_view stage, double fraction)> progress;

@@ -19,8 +19,8 @@ std::string_view source_revision() { return MANOSCOPE_REVISION; }
 std::string sha256(std::string_view bytes) {
   std::array<unsigned char, 32> digest{};
   unsigned int length = 0;
-  const int done = EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(),
-                              nullptr);
+  const int done =
+      EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr);
   if (done != 1 || length != digest.size()) throw InternalError("SHA-256 is not available");
   std::string text;
   for (const unsigned char byte : digest) text += fmt::format("{:02x}", byte);
@@ -42,15 +42,13 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t largest)
   }
   const std::uintmax_t size = std::filesystem::file_size(path, failure);
   if (failure || size > largest) {
-    throw InputError(path.string(),
-                     failure ? failure.message() : fmt::format("has {} bytes", size),
+    throw InputError(path.string(), failure ? failure.message() : fmt::format("has {} bytes", size),
                      fmt::format("Give a file of at most {} bytes", largest));
   }
   std::ifstream stream(path, std::ios::binary);
   std::string bytes(size, '\0');
   if (!stream || !stream.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw InputError(path.string(),
-                     fmt::format("cannot be read: {}", std::strerror(errno)),
+    throw InputError(path.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
                      "Check that you have permission to read the file");
   }
   return bytes;

@@ -6,7 +6,8 @@
 
 namespace manoscope {
 
-/// The candidate nearest to `word` (letters inserted, dropped, changed or swapped; case ignored), or "" if none is near.
+/// The candidate nearest to `word` (letters inserted, dropped, changed or swapped; case ignored),
+/// or "" if none is near.
 ///
 /// Near means at most a third of the longer word's letters differ.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);

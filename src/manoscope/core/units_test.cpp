@@ -8,7 +8,9 @@ namespace manoscope {
 namespace {
 
 template <class A, class B>
-concept Addable = requires(A a, B b) { a + b; };
+concept Addable = requires(A a, B b) {
+  a + b;
+};
 
 TEST(Quantity, AddsOnlyWhatHasTheSameDimension) {
   static_assert(Addable<Length, Length>);

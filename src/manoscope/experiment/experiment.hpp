@@ -43,11 +43,11 @@ struct InstrumentSection {
   std::optional<Pressure> pressure_noise;             ///< of one hydrostatic reading
   std::optional<double> pressure_gain_uncertainty;    ///< relative, common to all levels
   std::optional<Pressure> pressure_zero_uncertainty;  ///< common to all levels
-  /// What the map files do not say themselves: distance of columns and of rows, unit of the heights,
-  /// name of the channel to read.
+  /// What the map files do not say themselves: distance of columns and of rows, unit of the
+  /// heights, name of the channel to read.
   std::optional<std::array<Length, 2>> pixel_pitch;
   std::string height_unit, channel;
-  std::optional<std::filesystem::path> reference;     ///< the instrument's own flat reference map
+  std::optional<std::filesystem::path> reference;  ///< the instrument's own flat reference map
 };
 
 enum class SweepDirection { unknown, up, down };

@@ -35,8 +35,8 @@ struct Stretch {
   Length start{}, end{};
 };
 
-/// Where the test section is looked for: between the given ends, else `clearance` decay lengths w/pi
-/// from the clamped ends of the wall.
+/// Where the test section is looked for: between the given ends, else `clearance` decay lengths
+/// w/pi from the clamped ends of the wall.
 Stretch wanted_stretch(Length channel_length, Length channel_width,
                        const TestSectionOptions& options = {});
 

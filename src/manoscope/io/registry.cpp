@@ -121,9 +121,10 @@ const Channel& height_channel(const std::vector<Channel>& channels, const ReadOp
     unit_missing = unit_missing || (meant && channel.unit.empty());
   }
   if (unit_missing) {
-    throw InputError(where, "does not say in which unit its heights are",
-                     "Add it, e.g. --height-unit nm, or instrument.height_unit = \"nm\" in the experiment "
-                     "file");
+    throw InputError(
+        where, "does not say in which unit its heights are",
+        "Add it, e.g. --height-unit nm, or instrument.height_unit = \"nm\" in the experiment "
+        "file");
   }
   throw InputError(where,
                    fmt::format("has no heights: its channels are {}", channel_list(channels)),
@@ -187,9 +188,9 @@ HeightMap read_height_map(const std::filesystem::path& path, const ReadOptions& 
     throw InputError(where, "has no lateral scale",
                      fmt::format("Add the size of a pixel: {}, or instrument.pixel_pitch = "
                                  "[\"1.5 um\", \"1.5 um\"] in the experiment file",
-                                 both                         ? "--pitch-x 1.5um --pitch-y 1.5um"
+                                 both                       ? "--pitch-x 1.5um --pitch-y 1.5um"
                                  : grid.pitch_x <= Length{} ? "--pitch-x 1.5um"
-                                                              : "--pitch-y 1.5um"));
+                                                            : "--pitch-y 1.5um"));
   }
   bool any = false;
   for (Index i = 0; i < channel.values.size() && !any; ++i) {

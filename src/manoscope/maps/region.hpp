@@ -18,8 +18,8 @@ struct KnownPlace {
   std::optional<Angle> rotation;
   std::optional<Outward> outward;
 
-  /// Nothing but the side across is left to settle: without an origin the rotation is found, with one
-  /// it is 0 unless given.
+  /// Nothing but the side across is left to settle: without an origin the rotation is found, with
+  /// one it is 0 unless given.
   bool complete() const { return origin && flow && outward; }
 };
 

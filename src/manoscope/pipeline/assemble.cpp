@@ -51,8 +51,7 @@ void store_budget(const std::vector<RunFindings>& findings, results::Measurement
   Array2 nothing(n_runs, m.x.size());
   for (Index r = 0; r < n_runs; ++r) {
     const auto& reading = findings[static_cast<std::size_t>(r)].reading;
-    nothing.row(r) =
-        masked(Array1::Zero(m.x.size()), [&](Index i) { return reading.answered(i); });
+    nothing.row(r) = masked(Array1::Zero(m.x.size()), [&](Index i) { return reading.answered(i); });
   }
   std::map<std::string, std::size_t> place;
   for (Index r = 0; r < n_runs; ++r) {

@@ -126,8 +126,7 @@ void MeasureOptions::validate() const {
   reading.validate();
   section.validate();
   if (intersections.window && *intersections.window <= Length{}) {
-    throw InputError("--crossing-window",
-                     fmt::format("is {:.4g} um", intersections.window->in(um)),
+    throw InputError("--crossing-window", fmt::format("is {:.4g} um", intersections.window->in(um)),
                      "Give a length above 0, or auto");
   }
 }

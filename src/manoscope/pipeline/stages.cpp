@@ -100,8 +100,7 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
     result.hash[at] = sha256(read_file(path));
     const HeightMap map = source.read(path);
     require_same_grid(first_grid, first_name, map.grid(), name);
-    reduced[at] =
-        maps::reduce_map(map, frame, experiment.instrument.height_noise, name, options);
+    reduced[at] = maps::reduce_map(map, frame, experiment.instrument.height_noise, name, options);
     monitor.report("reducing maps",
                    static_cast<double>(++done) / static_cast<double>(files.size()));
   });

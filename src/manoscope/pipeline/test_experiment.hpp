@@ -66,9 +66,9 @@ class TestExperiment {
   /// One more map of a wall that is known already, with errors of its own.
   void add_map(const std::string& name, const twin::UniformCurve& deflection,
                std::uint64_t map_index) {
-    twin.maps.push_back({name, name,
-                         twin::record_map(scenario.channel, deflection, scenario.camera, 99,
-                                          map_index)});
+    twin.maps.push_back(
+        {name, name,
+         twin::record_map(scenario.channel, deflection, scenario.camera, 99, map_index)});
   }
 
   const std::filesystem::path& folder() const { return folder_.path(); }

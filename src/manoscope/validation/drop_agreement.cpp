@@ -158,8 +158,7 @@ Array1 resistance_pressure(const flow::Channel& channel, const flow::Fluid& flui
   const Array1 running =
       flow::running_resistance_drop(channel, fluid.viscosity, flow_rate, good.x, good.zeta);
   const Array1 gap = channel.height.si() + good.zeta;
-  const Array1 fall =
-      flow_rate.si() * flow::duct_resistance(fluid.viscosity, channel.width, gap);
+  const Array1 fall = flow_rate.si() * flow::duct_resistance(fluid.viscosity, channel.width, gap);
   const auto drop_to = [&](double x) {
     const auto* const begin = good.x.data();
     const auto* const end = begin + good.x.size();

@@ -133,8 +133,7 @@ TEST(CompareDrops, GivesBothDropsOfAKnownChannel) {
   for (int i = 0; i <= kSteps; ++i) {
     const double at = x1 + (x2 - x1) * i / kSteps;
     const double weight = i == 0 || i == kSteps ? 1.0 : (i % 2 == 1 ? 4.0 : 2.0);
-    by_hand +=
-        weight * resistance_by_hand(175e-6 + exact.wall.zeta(at, exact.truth(at))) / 3.0;
+    by_hand += weight * resistance_by_hand(175e-6 + exact.wall.zeta(at, exact.truth(at))) / 3.0;
   }
   by_hand *= 40e-6 / 60.0 * (x2 - x1) / kSteps;
   // Trapezoid on stations 0.6 mm apart: step^2/12 [r'] / mean r, about 3e-4.
@@ -161,8 +160,7 @@ void expect_effects_of_the_flow_map(const Trial& trial, const Profile& state) {
     const double slack = 1e-7;
     EXPECT_NEAR(effect(found.extracted, variable), extracted, slack + 1e-5 * std::abs(extracted))
         << variable;
-    EXPECT_NEAR(effect(found.resistance, variable), resistance,
-                slack + 1e-5 * std::abs(resistance))
+    EXPECT_NEAR(effect(found.resistance, variable), resistance, slack + 1e-5 * std::abs(resistance))
         << variable;
   };
   for (const ErrorMode& mode : state.uncertainty.modes) check(mode.variable, mode.effect);
@@ -227,9 +225,9 @@ TEST(CompareDrops, SharesOnlyTheErrorsOfTheFlowMap) {
   for (const auto& term : found.resistance.terms) {
     if (in_extracted.contains(term.variable)) shared.insert(term.variable);
   }
-  const std::set<std::string> expected{
-      "level plane, offset, flow", "level plane, tilt, flow", "shift of flow",
-      "noise of the flow profile at station 3", "noise of the flow profile at station 21"};
+  const std::set<std::string> expected{"level plane, offset, flow", "level plane, tilt, flow",
+                                       "shift of flow", "noise of the flow profile at station 3",
+                                       "noise of the flow profile at station 21"};
   EXPECT_EQ(shared, expected);
   for (const char* alone : {"label of h5", "gauge gain", "gauge zero"}) {
     EXPECT_TRUE(in_extracted.contains(alone)) << alone;
@@ -280,8 +278,7 @@ MonteCarlo run_trials(Trial trial, int n_trials, const flow::Channel& channel = 
     const Profile state = trial.state();
     flow::Channel stated = channel;
     stated.height += RandomStream(trial.seed, "height").normal() * height_uncertainty;
-    const auto found =
-        compare(trial.reading(state), state, flow_rate, stated, height_uncertainty);
+    const auto found = compare(trial.reading(state), state, flow_rate, stated, height_uncertainty);
     const double u_extracted = found.extracted.standard_uncertainty();
     const double u_resistance = found.resistance.standard_uncertainty();
     const double difference = found.extracted.value - found.resistance.value;
@@ -339,8 +336,8 @@ TEST(CompareDrops, WithoutAnyUncertaintyHasNoVerdict) {
   EXPECT_GT(found.en_number, 1.0);
   PressureReading certain = exact.reading(state);
   certain.uncertainty.modes.clear();
-  const auto verdict = compare_drops(kChannel, kWater, 10.0 * mL_per_min, Length{}, state, certain,
-                                     kSection);
+  const auto verdict =
+      compare_drops(kChannel, kWater, 10.0 * mL_per_min, Length{}, state, certain, kSection);
   EXPECT_TRUE(std::isnan(verdict.en_number)) << verdict.en_number;
 }
 
@@ -376,8 +373,8 @@ TEST(WholeChannel, IsClampedAtBothEnds) {
 }
 
 TEST(WholeChannel, TakesMeasuredEndsAsTheyAre) {
-  Profile state = test::exact_profile(Array1::LinSpaced(32, 0.0, 15.5e-3),
-                                      [](double) { return 30e-6; });
+  Profile state =
+      test::exact_profile(Array1::LinSpaced(32, 0.0, 15.5e-3), [](double) { return 30e-6; });
   const double drop = channel_resistance_drop(kChannel, kWater, 20.0 * mL_per_min, state).si();
   EXPECT_NEAR(drop / (20e-6 / 60.0 * 15.5e-3 * resistance_by_hand(205e-6)), 1.0, 1e-12);
   state.flags[0] = StationFlag::no_data;  // now the clamp speaks for the inlet
@@ -405,7 +402,8 @@ TEST(ResistancePressure, MeetsTheReadingAtTheEndAndFallsByQr) {
   const Trial trial;
   const Profile state = trial.state();
   const PressureReading reading = trial.reading(state);
-  const Array1 p = resistance_pressure(kChannel, kWater, 40.0 * mL_per_min, state, reading, kSection);
+  const Array1 p =
+      resistance_pressure(kChannel, kWater, 40.0 * mL_per_min, state, reading, kSection);
   ASSERT_EQ(p.size(), kStations);
   EXPECT_EQ(p[kSection.last], reading.pressure[kSection.last]);
   for (Index i = 1; i < kStations; ++i) {

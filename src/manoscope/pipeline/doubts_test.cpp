@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "manoscope/core/flags.hpp"
+#include "manoscope/pipeline/assemble.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+/// An experiment in which nothing is doubtful, put together by hand.
+struct CleanCase {
+  experiment::Experiment experiment;
+  maps::FoundPlace place;
+  ReducedExperiment reduced;
+  std::vector<FlowRun> runs;
+  std::vector<RunFindings> findings;
+
+  CleanCase() {
+    experiment.channel.length = 15.5 * mm;
+    experiment.channel.width = 1.7 * mm;
+    experiment.channel.height_uncertainty = 0.5 * um;
+    experiment.instrument.height_noise = 20.0 * nm;
+    place.length_misfit = place.width_misfit = std::numeric_limits<double>::quiet_NaN();
+    for (int k = 0; k < 3; ++k) {
+      maps::ReducedMap map;
+      map.condition.noise.sigma = 20.0 * nm;
+      map.condition.missing = 0.02;
+      reduced.hydrostatic.push_back(map);
+    }
+    reduced.flow.push_back(reduced.hydrostatic[0]);
+    FlowRun run;
+    run.name = "Q5";
+    runs.push_back(run);
+    RunFindings found;
+    found.reading.x = Array1::LinSpaced(16, 0.0, 15e-3);
+    found.reading.flags = Flags1::Zero(16);
+    found.stretch = {2.0 * mm, 13.0 * mm};
+    found.section = inversion::TestSection{2, 13};
+    findings.push_back(found);
+  }
+  std::vector<std::string> doubts() const {
+    return find_doubts(experiment, place, reduced, runs, findings);
+  }
+  /// The one doubt there should be.
+  std::string only() const {
+    const auto found = doubts();
+    EXPECT_EQ(found.size(), 1u);
+    return found.empty() ? "" : found.front();
+  }
+};
+
+#define EXPECT_SAYS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+TEST(FindDoubts, AreNoneInACleanExperiment) {
+  CleanCase clean;
+  EXPECT_TRUE(clean.doubts().empty());
+  clean.place.length_misfit = 0.08e-3;  // found, and within 5 % of the width
+  clean.place.width_misfit = -0.08e-3;
+  clean.experiment.instrument.height_noise.reset();
+  EXPECT_TRUE(clean.doubts().empty());
+}
+
+TEST(FindDoubts, OfTheStatedSizeNameItsKey) {
+  CleanCase test;
+  test.place.width_misfit = 0.01e-3;
+  test.place.length_misfit = -1.0e-3;
+  const std::string doubt = test.only();
+  EXPECT_SAYS(doubt, "14.50 mm");
+  EXPECT_SAYS(doubt, "channel.length");
+  test.place.length_misfit = 0.0;
+  test.place.width_misfit = 0.2e-3;
+  EXPECT_SAYS(test.only(), "channel.width");
+}
+
+TEST(FindDoubts, OfMapsTellHowManyAndHowBad) {
+  CleanCase noisy;
+  noisy.reduced.flow[0].condition.noise.sigma = 50.0 * nm;
+  noisy.reduced.hydrostatic[1].condition.noise.sigma = 30.0 * nm;
+  const std::string doubt = noisy.only();
+  EXPECT_SAYS(doubt, "2 maps are noisier");
+  EXPECT_SAYS(doubt, "2.5 times");
+  CleanCase gappy;
+  gappy.reduced.hydrostatic[2].condition.missing = 0.31;
+  EXPECT_SAYS(gappy.only(), "31 %");
+  CleanCase correlated;
+  correlated.reduced.flow[0].condition.noise.length_z = 4.2;
+  EXPECT_SAYS(correlated.only(), "4.2 pixels");
+}
+
+TEST(FindDoubts, OfTheGapUncertaintyNeedARun) {
+  CleanCase test;
+  test.experiment.channel.height_uncertainty.reset();
+  EXPECT_SAYS(test.only(), "channel.height_uncertainty");
+  test.runs.clear();
+  test.findings.clear();
+  EXPECT_TRUE(test.doubts().empty());
+}
+
+TEST(FindDoubts, CountSilentStationsClearOfTheEndsEvenBeyondTheSection) {
+  CleanCase test;
+  Flags1& flags = test.findings[0].reading.flags;
+  flags[2] = flags[3] = ReadingFlag::out_of_calibration | ReadingFlag::outside_test_section;
+  flags[0] = flags[15] = ReadingFlag::ambiguous;  // at the clamped ends: nobody expects an answer
+  test.findings[0].section = inversion::TestSection{4, 13};
+  const std::string doubt = test.only();
+  EXPECT_SAYS(doubt, "Run Q5: 2 of 12 stations");
+  EXPECT_SAYS(doubt, "outside the calibrated levels");
+  flags[8] = ReadingFlag::ambiguous;
+  flags[9] = ReadingFlag::insensitive;
+  EXPECT_EQ(test.doubts().size(), 3u);
+}
+
+TEST(FindDoubts, OfARunWithoutATestSectionSayWhy) {
+  CleanCase test;
+  test.findings[0].section.reset();
+  test.findings[0].reading.flags.setConstant(ReadingFlag::out_of_calibration);
+  const std::string doubt = test.only();
+  EXPECT_SAYS(doubt, "Run Q5: no test section");
+  EXPECT_SAYS(doubt, "16 of 16 out of calibration, 0 ambiguous");
+}
+
+}  // namespace
+}  // namespace manoscope::pipeline
