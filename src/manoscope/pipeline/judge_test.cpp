@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Truth falls from 1000 Pa by 100 Pa a millimetre; the reading is 3 Pa too high, 5 Pa at the start.
+/// Truth falls from 1000 Pa by 100 Pa a millimetre; the reading is 3 Pa too high, 5 Pa at the
+/// start.
 struct Case {
   results::Measurement m;
   twin::Truth truth;
