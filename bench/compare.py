@@ -130,6 +130,11 @@ def time_measure(programs, manoscope, repetitions, folder):
     judged = subprocess.run([manoscope, "judge", out, experiment / "truth", "--json"], check=True,
                             capture_output=True, text=True)
     table["judged"] = json.loads(judged.stdout)
+    for run in table["judged"]["runs"]:
+        allowed = max(0.01 * run["true_drop_Pa"], 20.0)  # what the measurement promises
+        if not (run["answered"] > 0 and run["rms_error_Pa"] <= allowed):
+            sys.exit(f"run {run['run']} is off by {run['rms_error_Pa']} Pa rms, {allowed:.0f} are "
+                     "allowed: a benchmark of wrong results is void")
     return table
 
 

@@ -1,5 +1,6 @@
 // Google Benchmark of each stage from a map file to p(x): bench_stages [--benchmark_filter=...].
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <filesystem>
@@ -174,4 +175,12 @@ BENCHMARK(read_pressure_and_covariance)->Unit(benchmark::kMillisecond);
 }  // namespace
 }  // namespace manoscope::bench
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // as the program does, see src/cli/main.cpp
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}

@@ -19,7 +19,8 @@ struct PlanePoint {
   double a, b, v;
 };
 
-/// Iteratively reweighted least squares with Tukey's biweight (c = 4.685: 95 % efficient on normal
+/// Iteratively reweighted least squares, its steps stretched by the share that they fall short of
+/// Newton's, with Tukey's biweight (c = 4.685: 95 % efficient on normal
 /// errors; Huber & Ronchetti, Robust Statistics, 2009), scale from the median absolute deviation,
 /// started from a least-absolute-deviation fit of at most 4000 evenly spaced points.
 ///

@@ -98,7 +98,8 @@ TEST(StoreCalibration, HasCrestsOfAParabola) {
     // the 0.2 % of a trapezoid rule on 43 pixels.
     EXPECT_NEAR(m.crest_deflection[k], 1.5 * m.static_deflection(k, middle),
                 50e-9 + 3e-3 * std::abs(m.crest_deflection[k]));
-    if (k > 0) EXPECT_GT(m.level_pressure[k], m.level_pressure[k - 1]);
+    if (k == 0) continue;
+    EXPECT_GT(m.level_pressure[k], m.level_pressure[k - 1]);
   }
 }
 

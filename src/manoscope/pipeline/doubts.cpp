@@ -12,18 +12,22 @@ namespace {
 using Words = std::vector<std::string>;
 
 void doubt_place(const experiment::Experiment& experiment, const maps::FoundPlace& place,
-                 Words& doubts) {
+                 const ReducedExperiment& reduced, Words& doubts) {
   constexpr double kShare = 0.05;  // of the width: about the size of the end effects of the edges
-  const double bound = kShare * experiment.channel.width.si();
-  const auto say = [&](const char* what, double misfit, Length stated) {
+  constexpr double kPixels = 2.0;  // and each end is found to a pixel
+  const bool along_columns = reduced.frame.along_columns();
+  const Length along = along_columns ? reduced.grid.pitch_x : reduced.grid.pitch_y;
+  const Length across = along_columns ? reduced.grid.pitch_y : reduced.grid.pitch_x;
+  const auto say = [&](const char* what, double misfit, Length stated, Length pitch) {
+    const double bound = std::max(kShare * experiment.channel.width, kPixels * pitch).si();
     if (std::isnan(misfit) || std::abs(misfit) <= bound) return;  // NaN: the place was given
     doubts.push_back(
         fmt::format("The wall moves over a {} of {:.2f} mm, the experiment file says "
                     "{:.2f} mm: check channel.{}",
                     what, (stated.si() + misfit) * 1e3, stated.in(mm), what));
   };
-  say("length", place.length_misfit, experiment.channel.length);
-  say("width", place.width_misfit, experiment.channel.width);
+  say("length", place.length_misfit, experiment.channel.length, along);
+  say("width", place.width_misfit, experiment.channel.width, across);
 }
 
 void doubt_maps(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
@@ -104,7 +108,7 @@ Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPla
                   const ReducedExperiment& reduced, const std::vector<FlowRun>& runs,
                   const std::vector<RunFindings>& findings) {
   Words doubts;
-  doubt_place(experiment, place, doubts);
+  doubt_place(experiment, place, reduced, doubts);
   doubt_maps(experiment, reduced, doubts);
   if (!experiment.channel.height_uncertainty && !runs.empty()) {
     doubts.emplace_back(

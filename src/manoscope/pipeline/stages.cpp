@@ -91,7 +91,7 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
     result.reference_hash = sha256(read_file(*experiment.instrument.reference));
   }
   const std::string& first_name = files.front().second;
-  const CameraGrid first_grid = source.read(files.front().first).grid();
+  result.grid = source.read(files.front().first).grid();
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(files.size()), n_threads, [&](Index i) {
     monitor.checkpoint();
@@ -99,7 +99,7 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
     const auto& [path, name] = files[at];
     result.hash[at] = sha256(read_file(path));
     const HeightMap map = source.read(path);
-    require_same_grid(first_grid, first_name, map.grid(), name);
+    require_same_grid(result.grid, first_name, map.grid(), name);
     reduced[at] = maps::reduce_map(map, frame, experiment.instrument.height_noise, name, options);
     monitor.report("reducing maps",
                    static_cast<double>(++done) / static_cast<double>(files.size()));

@@ -6,6 +6,7 @@
 
 #include "manoscope/calibration/levels.hpp"
 #include "manoscope/core/frame.hpp"
+#include "manoscope/core/grid.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/maps/reduce.hpp"
@@ -16,6 +17,7 @@ namespace manoscope::pipeline {
 /// The reduced maps of an experiment, in the order of its lists.
 struct ReducedExperiment {
   ChannelFrame frame;
+  CameraGrid grid;  ///< of every map
   std::vector<maps::ReducedMap> hydrostatic, flow;
   std::vector<std::string> hash;  ///< SHA-256 of each map, hydrostatic first
   std::string reference_hash;     ///< of the instrument's reference map, "" if there is none

@@ -170,7 +170,7 @@ Array1 resistance_pressure(const flow::Channel& channel, const flow::Fluid& flui
   const double end_drop = drop_to(state.x[section.last]);
   Array1 pressure(state.x.size());
   for (Index ix = 0; ix < pressure.size(); ++ix) {
-    pressure[ix] = reading.pressure[section.last] + end_drop - drop_to(state.x[ix]);
+    pressure[ix] = reading.pressure[section.last] + (end_drop - drop_to(state.x[ix]));
   }
   return pressure;
 }
