@@ -12,6 +12,7 @@ namespace {
 /// Squared distance from their best straight line, summed over stations.
 double distance_from_lines(const std::vector<Level>& levels, const PressureScale& scale) {
   std::vector<double> u;
+  u.reserve(levels.size());
   for (const Level& level : levels) u.push_back(scale.coordinate(level.pressure.si()));
   double distance = 0.0;
   for (Index ix = 0; ix < levels.front().profile.x.size(); ++ix) {
