@@ -23,6 +23,7 @@ void demo(const Context& context, const std::filesystem::path& out) {
   const auto measurement =
       pipeline::measure(experiment::read_experiment(folder), {}, context.threads, context.monitor);
   results::write_result(out, measurement, report::make_report(measurement));
+  for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
   const auto judgements = pipeline::judge(measurement, made.truth);
   if (context.json) {
     print(judgement_json(judgements));

@@ -29,6 +29,7 @@ void add_measure(Program& program) {
     context.monitor.checkpoint();
     results::write_result(args->out, measurement, report::make_report(measurement, args->report));
     print(context.json ? summary_json(measurement, args->out) : summary_text(measurement));
+    for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
     if (!context.json) {
       remark(context, fmt::format("result in {}, report in {}", args->out.string(),
                                   (args->out / "report.html").string()));

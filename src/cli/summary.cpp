@@ -62,19 +62,19 @@ std::string summary_text(const results::Measurement& m) {
                               : std::string("none"),
          drop_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
          drop_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
-         std::isfinite(m.en_number[r]) ? fmt::format("{:.1f}", m.en_number[r]) : std::string("-")});
+         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-")});
   }
   std::string text;
   if (m.flow_rate.size() > 0) {
     text += table(rows);
     text +=
-        "U: expanded uncertainty, k = 2. dp_e: drop read off the wall over the section; QR: "
-        "paper's eq. (4).\n";
+        "U: expanded uncertainty, k = 2. dp_e: drop read off the wall over the section. QR: the "
+        "paper's eq. (4),\nno inertia or entry flow; its U takes flow rate and viscosity as "
+        "exact.\n";
   } else {
     text +=
         fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
   }
-  for (const std::string& warning : m.warnings) text += "note: " + warning + "\n";
   return text;
 }
 

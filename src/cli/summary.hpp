@@ -9,8 +9,7 @@
 
 namespace manoscope::cli {
 
-/// The runs of a measurement as an aligned table, drops with expanded uncertainty (k = 2), and its
-/// warnings.
+/// The runs of a measurement as an aligned table, drops with expanded uncertainty (k = 2).
 std::string summary_text(const results::Measurement& measurement);
 /// p(x) of every run at a few stations, as an aligned table.
 std::string pressure_text(const results::Measurement& measurement);

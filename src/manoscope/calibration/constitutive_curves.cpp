@@ -1,5 +1,8 @@
 #include "manoscope/calibration/constitutive_curves.hpp"
 
+#include <map>
+#include <utility>
+
 namespace manoscope::calibration {
 namespace {
 
@@ -44,13 +47,17 @@ std::vector<double> ConstitutiveCurve::pressures(double zeta) const {
 
 std::vector<ConstitutiveCurve::LevelWeight> ConstitutiveCurve::level_weights(
     double pressure) const {
+  const double u = scale_.coordinate(pressure);
+  std::map<Index, std::pair<double, double>> by_knot;  // by deflection, by position
+  for (const auto& [j, weight] : spline_.weights(u)) by_knot[j].first += weight;
+  for (const auto& [j, weight] : spline_.knot_weights(u)) by_knot[j].second += weight;
   std::vector<LevelWeight> weights;
-  for (const auto& [j, weight] : spline_.weights(scale_.coordinate(pressure))) {
+  for (const auto& [j, weight] : by_knot) {
     const Knot& knot = knots_[static_cast<std::size_t>(j)];
-    const double slope_there = spline_.knot_slope(j) * scale_.derivative(knot.pressure);
-    const double share = weight / static_cast<double>(knot.levels.size());
+    const double share = 1.0 / static_cast<double>(knot.levels.size());
+    const double label = weight.second * scale_.derivative(knot.pressure);
     for (const Index level : knot.levels) {
-      weights.push_back({level, share, -share * slope_there});
+      weights.push_back({level, share * weight.first, share * label});
     }
   }
   return weights;

@@ -40,7 +40,7 @@ class ConstitutiveCurve {
   struct LevelWeight {
     Index level;
     double deflection;  ///< d zeta(p) / d zeta_level
-    double label;       ///< d zeta(p) / d p_level, m/Pa: minus the above times the slope there
+    double label;       ///< d zeta(p) / d p_level, m/Pa, p_s held fixed
   };
   std::vector<LevelWeight> level_weights(double pressure) const;
 

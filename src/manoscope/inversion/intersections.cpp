@@ -2,10 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <string>
 
 namespace manoscope::inversion {
 namespace {
+
+/// Variance, m2, of the difference of two profiles at a station from the errors it shares along x.
+double shared_variance(const Profile& state, const Profile& level, Index ix) {
+  std::map<std::string, double> effects;
+  for (const ErrorMode& mode : state.uncertainty.modes) effects[mode.variable] += mode.effect[ix];
+  for (const ErrorMode& mode : level.uncertainty.modes) effects[mode.variable] -= mode.effect[ix];
+  double variance = 0.0;
+  for (const auto& [variable, effect] : effects) variance += effect * effect;
+  return variance;
+}
 
 /// Difference of two profiles at the stations that count in both.
 struct Difference {
@@ -26,7 +38,8 @@ Difference subtract(const Profile& state, const Profile& level) {
 
 struct Line {
   double zero;        ///< where it crosses zero
-  double zero_sigma;  ///< standard uncertainty of that
+  double zero_sigma;  ///< standard uncertainty of that, from independent noise
+  double slope;       ///< of the difference
 };
 
 /// Least-squares line through the points within half a window of `centre`; nullopt if it is not
@@ -58,7 +71,7 @@ std::optional<Line> fit_zero(const Difference& d, double centre, double window) 
   if (std::abs(zero - centre) > window) return std::nullopt;
   const double lever = zero - mean_x;
   const double value_sigma = std::sqrt(variance / n + lever * lever * variance / sxx);
-  return Line{zero, value_sigma / std::abs(slope)};
+  return Line{zero, value_sigma / std::abs(slope), slope};
 }
 
 }  // namespace
@@ -86,8 +99,13 @@ std::vector<Intersection> find_intersections(const std::vector<calibration::Leve
       const auto line = fit_zero(difference, 0.5 * (changes[first] + changes[last]),
                                  window + changes[last] - changes[first]);
       if (crosses && line) {
-        found.push_back({Length::from_si(line->zero), Length::from_si(line->zero_sigma),
-                         level.pressure, level.uncertainty});
+        Index nearest = 0;
+        (state.x - line->zero).abs().minCoeff(&nearest);
+        const double shared =
+            std::sqrt(shared_variance(state, level.profile, nearest)) / std::abs(line->slope);
+        found.push_back({Length::from_si(line->zero),
+                         Length::from_si(std::hypot(line->zero_sigma, shared)), level.pressure,
+                         level.uncertainty});
       }
       first = last + 1;
     }

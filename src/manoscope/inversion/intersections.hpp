@@ -12,7 +12,7 @@ namespace manoscope::inversion {
 /// One point where the profile under flow crosses the static profile of a level.
 struct Intersection {
   Length x{};
-  Length x_uncertainty{};  ///< standard, from the noise of both profiles
+  Length x_uncertainty{};  ///< standard, from all errors of both profiles; the label's is apart
   Pressure pressure{};     ///< of the level
   Pressure pressure_uncertainty{};
 };

@@ -166,11 +166,8 @@ PressureReading read_pressure(const ConstitutiveCurves& curves, const Profile& s
   reading.uncertainty.independent = variance.sqrt();
   reading.uncertainty.modes = table.take();
 
+  form_interval(reading, options.coverage);
   const Array1 standard = reading.uncertainty.standard();
-  const double factor =
-      boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + options.coverage));
-  reading.lower = reading.pressure - factor * standard;
-  reading.upper = reading.pressure + factor * standard;
   for (Index ix = 0; ix < n; ++ix) {
     if (!reading.answered(ix) || standard[ix] <= options.largest_uncertainty * range) continue;
     reading.flags[ix] |= ReadingFlag::insensitive;
@@ -179,6 +176,13 @@ PressureReading read_pressure(const ConstitutiveCurves& curves, const Profile& s
     for (ErrorMode& mode : reading.uncertainty.modes) mode.effect[ix] = 0.0;
   }
   return reading;
+}
+
+void form_interval(PressureReading& reading, double coverage) {
+  const double factor = boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + coverage));
+  const Array1 standard = reading.uncertainty.standard();
+  reading.lower = reading.pressure - factor * standard;
+  reading.upper = reading.pressure + factor * standard;
 }
 
 }  // namespace manoscope::inversion

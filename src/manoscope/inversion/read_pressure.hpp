@@ -68,4 +68,7 @@ PressureReading read_pressure(const calibration::ConstitutiveCurves& curves, con
                               const GaugeErrors& gauge = {},
                               const ReadPressureOptions& options = {});
 
+/// Forms lower and upper anew from the standard uncertainty: symmetric, normal.
+void form_interval(PressureReading& reading, double coverage);
+
 }  // namespace manoscope::inversion

@@ -173,6 +173,12 @@ Profile width_average(const DeflectionMap& map, const RimPlane& plane, Length ch
     design.row(i) << column->measured, column->measured * (profile.x[i] - plane.x_centre),
         column->mean_z;
   }
+  // The trapezoid rule takes zeta (pitch / width)^2 off a parabola: the same share of every profile
+  // on this grid, hence one error variable for all of them, which cancels where profiles are
+  // compared.
+  const double lost = std::pow(grid.pitch_z / channel_width, 2);
+  profile.uncertainty.modes.push_back(
+      {"quadrature across the width", "quadrature", profile.zeta * lost});
   if (plane.covariance(0, 0) <= 0.0) return profile;  // a noise-free rim knows its plane
   const Eigen::Matrix3d root = plane.covariance.llt().matrixL();
   const Matrix effects = design * root;

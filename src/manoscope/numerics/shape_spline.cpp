@@ -211,4 +211,25 @@ std::vector<std::pair<Index, double>> ShapeSpline::weights(double u) const {
   return result;
 }
 
+std::vector<std::pair<Index, double>> ShapeSpline::knot_weights(double u) const {
+  // The interval and one knot to either side fix both slopes, hence the value.
+  const Index j = interval(u);
+  const Index first = std::max<Index>(0, std::min(j - 1, size() - 3));
+  const Index last = std::min(size() - 1, std::max<Index>(j + 2, 2));
+  const std::vector<double> u_near(u_.begin() + first, u_.begin() + last + 1);
+  const std::vector<double> y_near(y_.begin() + first, y_.begin() + last + 1);
+  double gap = u_near.back() - u_near.front();
+  for (std::size_t k = 1; k < u_near.size(); ++k) gap = std::min(gap, u_near[k] - u_near[k - 1]);
+  const double step = 1e-6 * gap;
+  std::vector<std::pair<Index, double>> result;
+  for (std::size_t k = 0; k < u_near.size(); ++k) {
+    std::vector<double> above = u_near, below = u_near;
+    above[k] += step;
+    below[k] -= step;
+    const double rise = ShapeSpline(above, y_near).value(u) - ShapeSpline(below, y_near).value(u);
+    result.emplace_back(first + static_cast<Index>(k), rise / (above[k] - below[k]));
+  }
+  return result;
+}
+
 }  // namespace manoscope::numerics

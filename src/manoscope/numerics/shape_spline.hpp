@@ -46,6 +46,11 @@ class ShapeSpline {
   /// d value(u) / d y_j for the few knots j that matter: (j, derivative).
   std::vector<std::pair<Index, double>> weights(double u) const;
 
+  /// d value(u) / d u_j for the same few knots: what moving a knot along u does. Moving all of them
+  /// together moves the curve, so the derivatives sum to -derivative(u). By central differences of
+  /// the interpolant itself, in steps of 1e-6 of the nearest distance of knots.
+  std::vector<std::pair<Index, double>> knot_weights(double u) const;
+
  private:
   Index interval(double u) const;
 

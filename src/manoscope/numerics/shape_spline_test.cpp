@@ -87,6 +87,30 @@ TEST(ShapeSpline, WeightsAreTheDerivativesWithRespectToTheValues) {
   }
 }
 
+TEST(ShapeSpline, KnotWeightsAreTheDerivativesWithRespectToTheKnotsAndSumToMinusTheSlope) {
+  // Bent sharply in the middle, where the slope of a knot says nothing about its neighbour's
+  // interval.
+  const std::vector<double> u{0.0, 1.0, 1.8, 3.0, 3.9, 5.0, 6.0};
+  const std::vector<double> y{0.0, 0.1, 0.3, 4.0, 7.8, 8.0, 8.1};
+  const ShapeSpline spline(u, y);
+  constexpr double kStep = 1e-5;
+  for (double at = 0.05; at < 6.0; at += 0.173) {
+    double sum = 0.0;
+    for (const auto& [j, weight] : spline.knot_weights(at)) {
+      auto up = u, down = u;
+      up[static_cast<std::size_t>(j)] += kStep;
+      down[static_cast<std::size_t>(j)] -= kStep;
+      const double expected =
+          (ShapeSpline(up, y).value(at) - ShapeSpline(down, y).value(at)) / (2.0 * kStep);
+      // Differences of another step, over the whole spline: its square times a derivative of order
+      // 1e3.
+      EXPECT_NEAR(weight, expected, 1e-6) << at << " " << j;
+      sum += weight;
+    }
+    EXPECT_NEAR(sum, -spline.derivative(at), 1e-6) << at;
+  }
+}
+
 TEST(ShapeSpline, DerivativeAgreesWithDifferences) {
   const ShapeSpline spline = sampled(9, [](double u) { return std::sin(3.0 * u); });
   for (double at = 0.03; at < 0.97; at += 0.05) {

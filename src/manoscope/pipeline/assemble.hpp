@@ -1,9 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "manoscope/calibration/constitutive_curves.hpp"
+#include "manoscope/calibration/fit_curves.hpp"
 #include "manoscope/inversion/intersections.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
@@ -13,6 +16,9 @@
 
 namespace manoscope::pipeline {
 
+/// A number that does not exist.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
 /// All that was found about one run.
 struct RunFindings {
   inversion::PressureReading reading;
@@ -21,8 +27,9 @@ struct RunFindings {
   std::vector<inversion::Intersection> intersections;
   std::optional<validation::DropAgreement> agreement;  ///< needs a test section
   Array1 resistance_pressure;                          ///< (n_x) Pa, NaN without a test section
-  double channel_resistance_drop = 0.0;                ///< Pa
-  double reynolds = 0.0;
+  double channel_resistance_drop = kMissing;           ///< Pa
+  double reynolds = kMissing;
+  std::string no_comparison;  ///< why the flow could not be compared; empty if it was
   std::optional<Pressure> parasitic_drop;
 };
 
@@ -35,10 +42,25 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
                 results::Measurement& measurement);
 void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& measurement);
 
+/// A level whose map disagrees with the curves through the other levels.
+struct LevelDoubt {
+  std::string name;
+  double label = 0.0, read = 0.0;  ///< Pa
+  double pull = 0.0;               ///< (read - label) over the uncertainty of both
+};
+
+/// Leaves out each inner level in turn, reads its map on the curves of the others at stations about
+/// mid-channel, and lists the levels that are off by more than 5 standard uncertainties in the
+/// median.
+std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& curves,
+                                        const calibration::FitCurvesOptions& options);
+
 /// Doubts worth a person's time, in words.
 std::vector<std::string> find_doubts(const experiment::Experiment& experiment,
                                      const maps::FoundPlace& place,
                                      const ReducedExperiment& reduced,
+                                     const calibration::ConstitutiveCurves& curves,
+                                     const std::vector<LevelDoubt>& levels,
                                      const std::vector<FlowRun>& runs,
                                      const std::vector<RunFindings>& findings);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/pipeline/assemble.hpp"
@@ -102,10 +103,94 @@ void doubt_run(const FlowRun& run, const RunFindings& found, Words& doubts) {
   say(ReadingFlag::insensitive, "for the wall hardly answers there");
 }
 
+/// Labels, number of levels, and the sign of the wall's answer.
+void doubt_calibration(const experiment::Experiment& experiment,
+                       const calibration::ConstitutiveCurves& curves,
+                       const std::vector<LevelDoubt>& levels, Words& doubts) {
+  constexpr std::size_t kFewLevels = 8;
+  if (curves.levels.size() < kFewLevels) {
+    doubts.push_back(
+        fmt::format("Only {} levels make the curves: interpolation between them may "
+                    "err by more than the error bars say",
+                    curves.levels.size()));
+  }
+  const auto certain = std::count_if(
+      experiment.hydrostatic.begin(), experiment.hydrostatic.end(), [](const auto& entry) {
+        return entry.pressure != Pressure{} && entry.pressure_uncertainty == Pressure{};
+      });
+  if (certain > 0) {
+    doubts.push_back(fmt::format(
+        "{} levels at other than 0 Pa have a pressure uncertainty of 0, as if vented to air: the "
+        "error bars lack the noise of the gauge (pressure_uncertainty, instrument.pressure_noise)",
+        certain));
+  }
+  const Profile& first = curves.levels.front().profile;
+  const Profile& last = curves.levels.back().profile;
+  Index inward = 0, counted = 0;
+  for (Index ix = 0; ix < curves.x.size(); ++ix) {
+    if (first.flags[ix] != 0 || last.flags[ix] != 0) continue;
+    ++counted;
+    inward += last.zeta[ix] < first.zeta[ix];
+  }
+  if (2 * inward > counted) {
+    doubts.emplace_back(
+        "The wall moves towards the fluid as pressure rises: channel.outward has "
+        "the wrong sign, or the labels do");
+    return;  // what follows would only repeat it
+  }
+  for (const LevelDoubt& level : levels) {
+    doubts.push_back(fmt::format(
+        "Level {}: labelled {:.6g} Pa, but its map reads {:.6g} Pa on the curves of the other "
+        "levels, {:.0f} standard uncertainties away: check its label and its neighbours'; if they "
+        "are right the wall turns sharply there, and closer levels would help",
+        level.name, level.label, level.read, std::abs(level.pull)));
+  }
+}
+
+/// The same bytes listed twice.
+void doubt_inputs(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
+                  Words& doubts) {
+  std::map<std::string, std::string> seen;
+  const std::size_t n_static = experiment.hydrostatic.size();
+  for (std::size_t i = 0; i < reduced.hash.size(); ++i) {
+    const std::string& name =
+        i < n_static ? experiment.hydrostatic[i].name : experiment.flow[i - n_static].name;
+    const auto [place, is_new] = seen.try_emplace(reduced.hash[i], name);
+    if (!is_new) {
+      doubts.push_back(
+          fmt::format("{} and {} are the same file, byte by byte", place->second, name));
+    }
+  }
+}
+
+void doubt_agreement(const FlowRun& run, const RunFindings& found, Words& doubts) {
+  constexpr double kFarApart =
+      5.0;  // ten standard uncertainties: beyond any flow model's refinement
+  if (!found.no_comparison.empty()) {
+    doubts.push_back(
+        fmt::format("Run {}: no hydraulic resistance, for the {}", run.name, found.no_comparison));
+  }
+  if (!found.agreement) return;
+  const double extracted = found.agreement->extracted.value;
+  if (run.flow_rate > FlowRate{} && extracted < 0.0) {
+    doubts.push_back(
+        fmt::format("Run {}: the pressure rises by {:.0f} Pa along the flow: "
+                    "channel.flow points the wrong way, or the maps are mixed up",
+                    run.name, -extracted));
+  } else if (std::isgreater(found.agreement->en_number, kFarApart)) {
+    doubts.push_back(fmt::format(
+        "Run {}: dp_e = {:.4g} Pa and QR = {:.4g} Pa are {:.0f} times their expanded uncertainty "
+        "apart: check the units of pressures and flow rates, channel.height, the viscosity, and "
+        "that the map belongs to the run",
+        run.name, extracted, found.agreement->resistance.value, found.agreement->en_number));
+  }
+}
+
 }  // namespace
 
 Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPlace& place,
-                  const ReducedExperiment& reduced, const std::vector<FlowRun>& runs,
+                  const ReducedExperiment& reduced, const calibration::ConstitutiveCurves& curves,
+                  const std::vector<LevelDoubt>& levels, const std::vector<FlowRun>& runs,
                   const std::vector<RunFindings>& findings) {
   Words doubts;
   doubt_place(experiment, place, reduced, doubts);
@@ -114,7 +199,12 @@ Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPla
     doubts.emplace_back(
         "channel.height_uncertainty is not given: the uncertainty of QR lacks that of the gap");
   }
-  for (std::size_t r = 0; r < runs.size(); ++r) doubt_run(runs[r], findings[r], doubts);
+  doubt_calibration(experiment, curves, levels, doubts);
+  doubt_inputs(experiment, reduced, doubts);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    doubt_run(runs[r], findings[r], doubts);
+    doubt_agreement(runs[r], findings[r], doubts);
+  }
   return doubts;
 }
 

@@ -14,6 +14,8 @@ struct CleanCase {
   experiment::Experiment experiment;
   maps::FoundPlace place;
   ReducedExperiment reduced;
+  calibration::ConstitutiveCurves curves;
+  std::vector<LevelDoubt> levels;
   std::vector<FlowRun> runs;
   std::vector<RunFindings> findings;
 
@@ -30,6 +32,14 @@ struct CleanCase {
       reduced.hydrostatic.push_back(map);
     }
     reduced.flow.push_back(reduced.hydrostatic[0]);
+    curves.x = Array1::LinSpaced(4, 1e-3, 14e-3);
+    for (int k = 0; k < 8; ++k) {
+      calibration::Level level{"h" + std::to_string(k), 1.0 * k * kPa, 10.0 * Pa, {}};
+      level.profile.x = curves.x;
+      level.profile.zeta = Array1::Constant(4, 1e-6 * k);
+      level.profile.flags = Flags1::Zero(4);
+      curves.levels.push_back(level);
+    }
     FlowRun run;
     run.name = "Q5";
     runs.push_back(run);
@@ -41,7 +51,7 @@ struct CleanCase {
     findings.push_back(found);
   }
   std::vector<std::string> doubts() const {
-    return find_doubts(experiment, place, reduced, runs, findings);
+    return find_doubts(experiment, place, reduced, curves, levels, runs, findings);
   }
   /// The one doubt there should be.
   std::string only() const {
@@ -123,6 +133,52 @@ TEST(FindDoubts, OfARunWithoutATestSectionSayWhy) {
   const std::string doubt = test.only();
   expect_says(doubt, "Run Q5: no test section");
   expect_says(doubt, "16 of 16 out of calibration, 0 ambiguous");
+}
+
+TEST(FindDoubts, OfTheCalibrationNameWhatToCheck) {
+  CleanCase test;
+  test.levels.push_back({"h3", 3000.0, 3330.0, 12.0});
+  expect_says(test.only(), "Level h3: labelled 3000 Pa, but its map reads 3330 Pa");
+  test.levels.clear();
+  test.experiment.hydrostatic.resize(2);
+  test.experiment.hydrostatic[1].pressure = 100.0 * Pa;  // uncertainty 0, yet not vented
+  expect_says(test.only(), "pressure uncertainty of 0");
+  test.experiment.hydrostatic.clear();
+  test.curves.levels.resize(5);
+  expect_says(test.only(), "Only 5 levels");
+}
+
+TEST(FindDoubts, OfAWallThatMovesInwardNameTheSign) {
+  CleanCase test;
+  for (auto& level : test.curves.levels) level.profile.zeta = -level.profile.zeta;
+  test.levels.push_back({"h3", 3000.0, 3330.0, 12.0});  // says nothing then
+  expect_says(test.only(), "channel.outward");
+}
+
+TEST(FindDoubts, OfTheSameFileTwiceNameBoth) {
+  CleanCase test;
+  test.experiment.flow.resize(2);
+  test.experiment.flow[0].name = "f0.gsf";
+  test.experiment.flow[1].name = "f1.gsf";
+  test.reduced.hash = {"abc", "abc"};
+  expect_says(test.only(), "f0.gsf and f1.gsf are the same file");
+}
+
+TEST(FindDoubts, OfTheFlowAreLoud) {
+  CleanCase test;
+  test.runs[0].flow_rate = 5.0 * mL_per_min;
+  test.findings[0].agreement = validation::DropAgreement{};
+  test.findings[0].agreement->extracted.value = -900.0;
+  test.findings[0].agreement->resistance.value = 1000.0;
+  test.findings[0].agreement->en_number = 50.0;
+  expect_says(test.only(), "channel.flow");
+  test.findings[0].agreement->extracted.value = 900.0e3;
+  expect_says(test.only(), "check the units");
+  test.findings[0].agreement->en_number = 2.0;
+  EXPECT_TRUE(test.doubts().empty());
+  test.findings[0].agreement.reset();
+  test.findings[0].no_comparison = "gap at station 3 is -1 um";
+  expect_says(test.only(), "no hydraulic resistance, for the gap at station 3");
 }
 
 }  // namespace

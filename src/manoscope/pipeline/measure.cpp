@@ -8,6 +8,7 @@
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/flow/parasitic.hpp"
+#include "manoscope/inversion/end_doubt.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 #include "manoscope/pipeline/stages.hpp"
 
@@ -35,10 +36,24 @@ std::optional<Pressure> parasitic_drop(const Experiment& experiment, FlowRate fl
   return drop;
 }
 
+/// Reynolds number and resistance of the measured gap against the reading.
+void compare_with_flow(const Experiment& experiment, const FlowRun& run, RunFindings& found) {
+  const flow::Channel channel = channel_of(experiment);
+  const flow::Fluid fluid = fluid_of(experiment);
+  found.reynolds = validation::mean_reynolds(channel, fluid, run.flow_rate, run.profile);
+  found.channel_resistance_drop =
+      validation::channel_resistance_drop(channel, fluid, run.flow_rate, run.profile).si();
+  if (!found.section) return;
+  const Length height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{});
+  found.agreement = validation::compare_drops(channel, fluid, run.flow_rate, height_uncertainty,
+                                              run.profile, found.reading, *found.section);
+  found.resistance_pressure = validation::resistance_pressure(
+      channel, fluid, run.flow_rate, run.profile, found.reading, *found.section);
+}
+
 RunFindings read_run(const Experiment& experiment, const calibration::ConstitutiveCurves& curves,
                      const FlowRun& run, const MeasureOptions& options) {
   const flow::Channel channel = channel_of(experiment);
-  const flow::Fluid fluid = fluid_of(experiment);
   const inversion::GaugeErrors gauge{
       experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
       experiment.instrument.pressure_zero_uncertainty.value_or(Pressure{})};
@@ -49,6 +64,10 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
   found.section =
       inversion::find_test_section(found.reading, channel.length, channel.width, options.section);
   inversion::flag_outside(found.reading, found.section);
+  if (found.section) {
+    inversion::add_end_doubt(found.reading, *found.section, channel.length, channel.width,
+                             options.reading.coverage);
+  }
   found.intersections = inversion::find_intersections(curves.levels, run.profile, channel.width,
                                                       options.intersections);
   if (found.section) {
@@ -59,18 +78,14 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
              crossing.x.si() > found.reading.x[found.section->last];
     });
   }
-  found.reynolds = validation::mean_reynolds(channel, fluid, run.flow_rate, run.profile);
-  found.channel_resistance_drop =
-      validation::channel_resistance_drop(channel, fluid, run.flow_rate, run.profile).si();
   found.parasitic_drop = parasitic_drop(experiment, run.flow_rate);
   found.resistance_pressure =
       Array1::Constant(curves.x.size(), std::numeric_limits<double>::quiet_NaN());
-  if (found.section) {
-    const Length height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{});
-    found.agreement = validation::compare_drops(channel, fluid, run.flow_rate, height_uncertainty,
-                                                run.profile, found.reading, *found.section);
-    found.resistance_pressure = validation::resistance_pressure(
-        channel, fluid, run.flow_rate, run.profile, found.reading, *found.section);
+  try {
+    compare_with_flow(experiment, run, found);
+  } catch (const InputError& error) {
+    // A gap that closes or exceeds the width ends the comparison, not the reading.
+    found.no_comparison = error.found();
   }
   return found;
 }
@@ -154,7 +169,8 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_calibration(curves, experiment, reduced.hydrostatic, measurement);
   store_runs(runs, findings, measurement);
   store_map_conditions(reduced, measurement);
-  measurement.warnings = find_doubts(experiment, place, reduced, runs, findings);
+  measurement.warnings = find_doubts(experiment, place, reduced, curves,
+                                     doubtful_levels(curves, options.curves), runs, findings);
   return measurement;
 }
 

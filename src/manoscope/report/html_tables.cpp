@@ -141,7 +141,9 @@ std::string runs_table(const Measurement& m) {
             cell(number_text(m.reynolds(run), 3)) +
             cell(drop(m.extracted_drop(run), m.extracted_drop_uncertainty(run))) +
             cell(drop(m.resistance_drop(run), m.resistance_drop_uncertainty(run))) +
-            cell(number_text(m.en_number(run), 2)) + cell(verdict(m.en_number(run))) +
+            cell(std::isfinite(m.en_number(run)) ? fmt::format("{:.2f}", m.en_number(run))
+                                                 : number_text(m.en_number(run), 2)) +
+            cell(verdict(m.en_number(run))) +
             cell(number_text(m.transducer_drop(run) / units.drop.si, 4)) +
             cell(number_text((m.transducer_drop(run) - m.parasitic_drop(run)) / units.drop.si, 4)) +
             cell(number_text(m.channel_resistance_drop(run) / units.drop.si, 4)) +
@@ -162,7 +164,12 @@ std::string runs_table(const Measurement& m) {
       fmt::format(
           "Pressure drops over the test section ± expanded uncertainty (k = {:.0f}, about 95 %). "
           "Δp<sub>e</sub>: read off the wall. QR: flow rate times hydraulic resistance of the "
-          "measured gap. They agree where E<sub>n</sub> ≤ 1. Read: share of the test section's "
+          "measured gap by the paper's eq. (4), which leaves out inertia and developing flow: at "
+          "high "
+          "flow rate a disagreement may be the formula's. U(QR) holds gap and deflection; flow "
+          "rate and "
+          "viscosity count as exact. They agree where E<sub>n</sub> ≤ 1. Read: share of the test "
+          "section's "
           "stations where the wall gives an answer.",
           kExpansion),
       head, body);
