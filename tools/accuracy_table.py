@@ -25,7 +25,11 @@ def ask(*command):
 
 
 def judge(program, result, truth):
-    return ask(program, "judge", result, truth, "--start", START, "--end", STOP, "--json")["runs"]
+    """Runs judged over [START, STOP], each with the drop over its own test section beside it."""
+    runs = ask(program, "judge", result, truth, "--start", START, "--end", STOP, "--json")["runs"]
+    for run, whole in zip(runs, ask(program, "judge", result, truth, "--json")["runs"]):
+        run["section"] = whole
+    return runs
 
 
 def experiment_table(program, experiment, work):
@@ -33,13 +37,15 @@ def experiment_table(program, experiment, work):
     ask(program, "measure", experiment, "-o", out, "--quiet", "--json")
     lines = [f"### {experiment.name}", "",
              "| run | true drop, Pa | rms error of p(x), Pa | % of drop | largest, Pa "
-             "| error of the drop, Pa | in 95 % bars |",
-             "|---|---|---|---|---|---|---|"]
+             "| error of the drop, Pa | in 95 % bars | dp_e of the test section: error, Pa (pull) |",
+             "|---|---|---|---|---|---|---|---|"]
     for run in judge(program, out, experiment):
         drop, rms = run["true_drop_Pa"], run["rms_error_Pa"]
         lines.append(f"| {run['run']} | {drop:.0f} | {rms:.1f} | {100 * rms / drop:.2f} "
                      f"| {run['largest_error_Pa']:.0f} | {run['drop_error_Pa']:+.0f} "
-                     f"| {100 * run['coverage']:.0f} % |")
+                     f"| {100 * run['coverage']:.0f} % "
+                     f"| {run['section']['drop_error_Pa']:+.0f} "
+                     f"({run['section']['drop_pull']:+.1f}) |")
     return lines + [""]
 
 
@@ -53,17 +59,19 @@ def demo_table(program, work):
             runs.setdefault(run["run"], []).append(run)
     lines = [f"### The embedded virtual experiment, seeds {SEEDS[0]} to {SEEDS[-1]}", "",
              "| run | true drop, Pa | rms error of p(x), Pa: median (worst) "
-             "| rms error of the drop, Pa | rms pull of the drop | in 95 % bars |",
-             "|---|---|---|---|---|---|"]
+             "| rms error of the drop, Pa | rms pull of the drop | in 95 % bars "
+             "| rms pull of dp_e of the test section |",
+             "|---|---|---|---|---|---|---|"]
     for name, found in runs.items():
         rms = sorted(run["rms_error_Pa"] for run in found)
         middle = 0.5 * (rms[(len(rms) - 1) // 2] + rms[len(rms) // 2])
         mean_square = [sum(run[key] ** 2 for run in found) / len(found)
                        for key in ("drop_error_Pa", "drop_pull")]
+        section = sum(run["section"]["drop_pull"] ** 2 for run in found) / len(found)
         coverage = sum(run["coverage"] for run in found) / len(found)
         lines.append(f"| {name} | {found[0]['true_drop_Pa']:.0f} | {middle:.1f} ({rms[-1]:.1f}) "
                      f"| {math.sqrt(mean_square[0]):.1f} | {math.sqrt(mean_square[1]):.2f} "
-                     f"| {100 * coverage:.0f} % |")
+                     f"| {100 * coverage:.0f} % | {math.sqrt(section):.2f} |")
     return lines + [""]
 
 

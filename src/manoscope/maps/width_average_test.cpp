@@ -247,8 +247,12 @@ TEST(WidthAverage, CarriesThePlaneCovarianceAsSharedModes) {
   root << 1e-9, 0, 0, 2e-7, 5e-7, 0, -3e-7, 1e-7, 9e-7;
   plane.covariance = root * root.transpose();
   const DeflectionMap map = sampled(parabola, 65.0, 0.3, Length{}, 20);
-  const Profile profile =
+  Profile profile =
       width_average(map, plane, Length::from_si(kLength), Length::from_si(kWidth), "h03.gsf");
+  // Beside the plane only the quadrature, whose variable belongs to no map.
+  EXPECT_EQ(std::erase_if(profile.uncertainty.modes,
+                          [](const ErrorMode& mode) { return mode.source == "quadrature"; }),
+            1U);
   ASSERT_EQ(profile.uncertainty.modes.size(), 3U);
   for (const ErrorMode& mode : profile.uncertainty.modes) {
     EXPECT_EQ(mode.source, "leveling");
