@@ -66,7 +66,7 @@ class Walk {
     const std::uint64_t length = count();
     cursor_.require(length, 1, "letters of a name");
     if (length == 0) cursor_.fail("has a name without letters", kMend);
-    const std::string text(cursor_.bytes(length));
+    std::string text(cursor_.bytes(length));
     cursor_.align(4);
     return text;
   }

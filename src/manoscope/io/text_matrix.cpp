@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/file_text.hpp"
@@ -167,7 +168,7 @@ bool may_be_row(std::string_view line) {
 /// right size.
 class Parser {
  public:
-  Parser(std::string_view text, const std::string& where) : text_(text), where_(where) {}
+  Parser(std::string_view text, std::string where) : text_(text), where_(std::move(where)) {}
 
   TextMatrix run() {
     survey();

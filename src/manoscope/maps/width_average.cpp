@@ -83,7 +83,7 @@ std::optional<ColumnAverage> average_column(const DeflectionMap& map, const Colu
     if (window.flags(iz, ix) != 0) continue;
     const double z = grid.z(iz);
     if (z > -half && z < half) {
-      nodes.emplace_back(z, window.zeta(iz, ix), 0.0, true);
+      nodes.push_back({z, window.zeta(iz, ix), 0.0, true});
       continue;
     }
     (z < 0.0 ? below : above) = Node{z, window.zeta(iz, ix), 0.0, true};

@@ -23,7 +23,7 @@
 namespace manoscope::report {
 namespace {
 
-constexpr int kSilence_ms = 60'000;
+constexpr int kSilenceMs = 60'000;
 
 [[noreturn]] void fail(const std::string& step, int error) {
   throw InternalError("gnuplot: " + step + ": " +
@@ -115,7 +115,7 @@ bool collect(Descriptor& output, std::string& bytes, Descriptor& messages, std::
   std::vector<char> buffer(1 << 16);
   while (output.is_open() || messages.is_open()) {
     std::array<pollfd, 2> waiting{{{output.number(), POLLIN, 0}, {messages.number(), POLLIN, 0}}};
-    const int ready = ::poll(waiting.data(), waiting.size(), kSilence_ms);
+    const int ready = ::poll(waiting.data(), waiting.size(), kSilenceMs);
     if (ready == 0) return false;
     if (ready < 0 && errno == EINTR) continue;
     if (ready < 0) fail("poll", errno);

@@ -60,7 +60,7 @@ std::string PlotScript::add_data(std::initializer_list<Array1> columns) {
     gap = !whole;
   }
   if (rows.empty()) return {};
-  const std::string name = fmt::format("$data{}", n_data_++);
+  std::string name = fmt::format("$data{}", n_data_++);
   text_ += name + " << END\n" + rows + "END\n";
   return name;
 }
