@@ -1,0 +1,95 @@
+#include "manoscope/wall/continuation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::wall {
+namespace {
+
+FopplVonKarmanOptions coarse() {
+  FopplVonKarmanOptions options;
+  options.n_cells_x = 12;
+  options.n_cells_z = 4;
+  options.design_pressure = 1.0 * kPa;
+  return options;
+}
+
+/// A wall compressed to `times` its buckling stress, with a slight downward shape.
+ClampedWall buckled(double times) {
+  ClampedWall wall{3.0 * mm, 1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23};
+  wall.prestress = times * FopplVonKarman(wall, coarse()).critical_prestress();
+  wall.initial_shape = {-0.05 * um, 0.1};
+  return wall;
+}
+
+WallLoad load(double p) { return WallLoad::uniform(Pressure::from_si(p)); }
+
+TEST(FollowPressure, OfATautWallIsOneBranchOfTheSameStatesAsDirectSolutions) {
+  ClampedWall taut{3.0 * mm, 1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23, 20.0 * MPa};
+  const FopplVonKarman wall(taut, coarse());
+  const Array1 p = Array1::LinSpaced(4, 0.0, 3e3);
+  const LoadPath path = follow_pressure(wall, wall.unloaded(), p);
+  EXPECT_TRUE(path.snaps.empty());
+  ASSERT_EQ(path.states.size(), 4u);
+  for (Index i = 1; i < 4; ++i) {
+    // Two iterations to a residual of 1e-9 of the same equations.
+    EXPECT_NEAR(path.states[i].volume() / wall.equilibrium(load(p(i))).volume(), 1.0, 1e-7);
+  }
+}
+
+TEST(FollowPressure, OfABuckledWallSnapsThroughUpwardAndBackAtAnotherPressure) {
+  const FopplVonKarman wall(buckled(3.0), coarse());
+  const WallState down = wall.equilibrium(load(0.0));
+  EXPECT_LT(down.average_deflection(1.5e-3), 0.0);
+  EXPECT_EQ(down.n_unstable(), 0);
+  const Array1 up_path = Array1::LinSpaced(9, 0.0, 160.0);
+  const LoadPath up = follow_pressure(wall, down, up_path);
+  ASSERT_EQ(up.snaps.size(), 1u);
+  const SnapThrough& snap = up.snaps.front();
+  EXPECT_GT(snap.pressure.si(), 0.0);
+  EXPECT_LE(snap.uncertainty.si(), 0.02);  // 1e-3 of the step of 20 Pa
+  EXPECT_LT(snap.before.volume(), 0.0);
+  EXPECT_GT(snap.after.volume(), 0.0);
+  for (const WallState& state : up.states) EXPECT_EQ(state.n_unstable(), 0);
+
+  // On the way back the upper branch holds past the pressure at which the lower one ended:
+  // at p = 0 two states stand, one above and one below the plane.
+  const LoadPath back = follow_pressure(wall, up.states.back(), Array1(-up_path + 160.0));
+  EXPECT_TRUE(back.snaps.empty());
+  EXPECT_GT(back.states.back().volume(), 0.0);
+  EXPECT_EQ(back.states.back().n_unstable(), 0);
+  const LoadPath on = follow_pressure(wall, back.states.back(), Array1(-up_path));
+  ASSERT_EQ(on.snaps.size(), 1u);
+  EXPECT_LT(on.states.back().volume(), 0.0);
+  // Slightly shaped downward, the wall leaves the upper branch more readily than the lower.
+  EXPECT_LT(std::abs(on.snaps.front().pressure.si()), snap.pressure.si());
+}
+
+TEST(FollowPressure, EnergyGrowsByThePressureTimesTheVolumeAlongABranch) {
+  // dU = p dV: a central difference over +-h has an error of (h/p)^2 times a number of order one.
+  const FopplVonKarman wall(buckled(2.0), coarse());
+  const double p = 400.0, h = 2.0;
+  const WallState state = wall.equilibrium(load(p));
+  const WallState above = wall.equilibrium(load(p + h), state);
+  const WallState below = wall.equilibrium(load(p - h), state);
+  EXPECT_NEAR(
+      (above.elastic_energy() - below.elastic_energy()) / (above.volume() - below.volume()) / p,
+      1.0, 1e-4);
+}
+
+TEST(FollowPressure, RefusesPathsWithoutFinitePressures) {
+  ClampedWall taut{3.0 * mm, 1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23, 20.0 * MPa};
+  const FopplVonKarman wall(taut, coarse());
+  EXPECT_THROW(follow_pressure(wall, wall.unloaded(), Array1()), InputError);
+  EXPECT_THROW(follow_pressure(wall, wall.unloaded(),
+                               Array1::Constant(1, std::numeric_limits<double>::infinity())),
+               InputError);
+  EXPECT_THROW(follow_pressure(wall, wall.unloaded(), Array1::Zero(1), {0.0}), InputError);
+}
+
+}  // namespace
+}  // namespace manoscope::wall
