@@ -11,6 +11,16 @@ DEMO ?= manoscope-demo
 PACKAGES ?= yes
 PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
+# Of `make fuzz` and `make fuzz-coverage`.
+FUZZ_FILES ?= 100000
+SECONDS_PER_READER ?= 30
+# Of `make tidy-changed`: how far back a source counts as changed.
+TIDY_COMMITS ?= 6
+# Much arithmetic and little memory work: minutes each under the sanitizers, which see the same code
+# on smaller grids in the other tests. `make asan-all` runs them, too.
+LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid
+LONG_TWINS = VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
+LONG_UNDER_ASAN = $(LONG_WALLS)|$(LONG_TWINS)
 
 # CMake takes these as the defaults of a new build folder and leaves one that exists as it is.
 export CMAKE_GENERATOR ?= Ninja
@@ -24,7 +34,8 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy check format format-check layers scripts tidy asan clean \
+.PHONY: all demo test bench docs accuracy check format format-check layers scripts tidy \
+        tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
 all: ## build the program, build/manoscope (the default)
@@ -49,8 +60,8 @@ bench: ## time the program against the same work in numpy
 docs: all ## check links and commands of the documentation
 	@tools/check_docs.py --program $(BUILD)/manoscope
 
-accuracy: all ## measure experiments with known truth, write the tables of docs/accuracy.md
-	tools/accuracy_table.py $(BUILD)/manoscope docs/accuracy.md $(wildcard $(PRACTICE)/S*)
+accuracy: all ## make, measure and judge every scenario at full size, write the tables of docs/
+	tools/accuracy_table.py $(BUILD)/manoscope docs $(wildcard $(PRACTICE)/S*)
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 
@@ -68,7 +79,7 @@ layers: ## check that includes point down layers.txt
 
 scripts: ## check the scripts of tools/
 	@$(install) checks
-	@shellcheck tools/*.sh .ci/run
+	@shellcheck tools/*.sh fuzz/*.sh .ci/run
 	@for test in tools/*_test.py; do python3 "$$test" -q || exit 1; done
 
 tidy: ## run clang-tidy on the sources
@@ -76,14 +87,41 @@ tidy: ## run clang-tidy on the sources
 	@$(configure) $(without_tests)
 	@cmake --build $(BUILD) --target tidy
 
-asan: ## every test once more, under the address and undefined-behaviour sanitizers
+tidy-changed: ## clang-tidy on the sources that the last TIDY_COMMITS commits changed
+	@$(install) build libraries checks
+	@$(configure) $(without_tests)
+	@cmake --build $(BUILD) -j $(JOBS) --target manoscope
+	@if git rev-parse -q --verify HEAD~$(TIDY_COMMITS) >/dev/null; then \
+	  changed=$$(git diff --name-only --diff-filter=d HEAD~$(TIDY_COMMITS) -- 'src/*.cpp' \
+	    ':!*_test.cpp'); \
+	  if [ -n "$$changed" ]; then tools/tidy.sh $(BUILD) $$changed; fi; \
+	else tools/tidy.sh $(BUILD); fi
+
+asan: ## the tests once more, under the address and undefined-behaviour sanitizers; not the longest
 	@$(install) build libraries figures tests
 	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS)
-	@ctest --preset asan -j $(JOBS)
+	@ctest --preset asan -j $(JOBS) -E '$(LONG_UNDER_ASAN)'
+
+asan-all: ## every test under the sanitizers: an hour
+	@$(MAKE) --no-print-directory asan LONG_UNDER_ASAN='^$$'
+
+fuzz: ## 100,000 damaged map files against every reader, under the sanitizers
+	@$(install) build libraries tests
+	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
+	@cmake --build --preset asan -j $(JOBS) --target mutate_maps
+	@build-asan/tests/mutate_maps --files $(FUZZ_FILES) --jobs $(JOBS)
+
+fuzz-coverage: ## every reader under libFuzzer for SECONDS_PER_READER; needs clang
+	@$(install) build libraries tests fuzz
+	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
+	@cmake --build --preset asan -j $(JOBS) --target mutate_maps
+	@cmake --preset fuzz --log-level=WARNING $(CMAKE_FLAGS)
+	@cmake --build --preset fuzz -j $(JOBS)
+	@fuzz/run_fuzzer.sh build-fuzz/fuzz/fuzz_reader build-asan/tests/mutate_maps $(SECONDS_PER_READER)
 
 clean: ## remove the build folders and the demo's output
-	@for folder in $(BUILD) build-asan build-dev build-release; do \
+	@for folder in $(BUILD) build-asan build-dev build-fuzz build-release; do \
 	  if [ -f "$$folder/CMakeCache.txt" ]; then rm -rf "$$folder"; fi; done
 	@rm -rf manoscope-demo
 

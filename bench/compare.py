@@ -8,6 +8,7 @@ import argparse
 import json
 import math
 import os
+import shutil
 import statistics
 import subprocess
 import sys
@@ -62,7 +63,7 @@ def check_agreement(ours, theirs):
     """Largest differences; ends the run if one is beyond round-off."""
     for one, other in zip(ours, theirs, strict=True):
         for key in ("hash", "flags"):
-            if one[key] != other[key]:
+            if one.get(key) != other.get(key):
                 sys.exit(f"the two sides differ in {key}: a benchmark of wrong results is void")
     stations = sum(flag == 0 for one in ours for flag in one["flags"])
     if stations < 0.9 * sum(len(one["flags"]) for one in ours):
@@ -104,6 +105,48 @@ def time_reduction(programs, n_maps, repetitions, folder):
     return table
 
 
+def time_linear(programs, size, n_maps, dropouts, repetitions, folder):
+    """The one-pass reduction, raw floats and .gsf, against numpy and against reading the bytes."""
+    folder.mkdir()
+    subprocess.run([programs / "bench_inputs", "frames", folder, str(n_maps), str(size[0]),
+                    str(size[1]), str(dropouts)], check=True)
+    inputs = folder / "inputs.json"
+    ours = Worker(programs / "bench_linear", inputs)
+    numpy = Worker(sys.executable, HERE / "linear.py", inputs)
+    orders = {"read": (ours, "read {}"), "one": (ours, "reduce {} 1"), "two": (ours, "reduce {} 2"),
+              "numpy": (numpy, "reduce {}")}
+    table = {"maps": n_maps, "size": size, "dropouts": dropouts, "repetitions": repetitions}
+    for kind in ("raw", "gsf"):
+        for worker, order in orders.values():  # fills the page cache
+            worker.order(order.format(kind))
+        answers = {name: [] for name in orders}
+        for _ in range(repetitions):
+            # Twice as often as numpy, whose share of the time is the larger by far.
+            for name in ("read", "one", "two", "read", "one", "two", "numpy"):
+                worker, order = orders[name]
+                answers[name].append(worker.order(order.format(kind)))
+        row = table[kind] = {}
+        for name, given in answers.items():
+            row[name] = {key: statistics.median(answer[key] for answer in given)
+                         for key in ("wall_s", "cpu_s")}
+            row[name]["least_s"] = min(answer["wall_s"] for answer in given)
+        # Ratios of neighbours in time, which met the same machine.
+        row["over_read"] = statistics.median(
+            one["cpu_s"] / read["cpu_s"] for one, read in zip(answers["one"], answers["read"]))
+        row["numpy_over"] = statistics.median(
+            numpy_["cpu_s"] / one["cpu_s"]
+            for one, numpy_ in zip(answers["one"][1::2], answers["numpy"]))
+        results = []
+        for name, worker in (("ours", ours), ("numpy", numpy)):
+            worker.order(f"save {folder / name}.json")
+            results.append(json.loads((folder / f"{name}.json").read_text(encoding="utf-8")))
+        row["largest_difference"] = check_agreement(*results)
+    for name, worker in (("ours_MB", ours), ("numpy_MB", numpy)):
+        table[name] = worker.order(f"save {folder / 'last'}.json")["peak_MB"]
+        worker.close()
+    return table
+
+
 def run_measured(*command):
     """Runs a program: wall seconds, processor seconds and peak memory of its largest process."""
     start = time.perf_counter()
@@ -118,9 +161,17 @@ def run_measured(*command):
             "peak_MB": usage.ru_maxrss / 1024.0}
 
 
-def time_measure(programs, manoscope, repetitions, folder):
-    experiment, out = folder / "experiment", folder / "result"
-    subprocess.run([programs / "bench_inputs", "experiment", experiment], check=True)
+def time_twin(manoscope, experiment):
+    """The shipped S1 at full size, once a number of threads: wall states, coupled flows and maps."""
+    table = {}
+    for threads in sorted({1, os.cpu_count() or 1}):
+        table[f"threads_{threads}"] = run_measured(manoscope, "twin", "S1", "-o", experiment,
+                                                   "--overwrite", "--threads", threads)
+    table["maps"] = len(list(experiment.glob("*.gsf")))
+    return table
+
+
+def time_measure(manoscope, repetitions, experiment, out):
     table = {"maps": len(list(experiment.glob("*.gsf"))), "repetitions": repetitions}
     for threads in sorted({1, os.cpu_count() or 1}):
         runs = [run_measured(manoscope, "measure", experiment, "-o", out, "--threads", threads)
@@ -153,9 +204,24 @@ def print_reduction(table):
           f"{difference['uncertainty_relative']:.1g} relative")
 
 
-def print_measure(table):
-    print(f"\nmanoscope measure: {table['maps']} maps of 1024 x 192 to p(x), figures and report; "
-          f"median of {table['repetitions']}")
+def print_linear(table):
+    nx, nz = table["size"]
+    print(f"\nOne pass over {table['maps']} maps of {nx} x {nz}, {100 * table['dropouts']:g} % of "
+          f"the pixels missing, from page cache; processor time, median of {table['repetitions']}")
+    print(f"{'':24}{'read ms':>9}{'ms':>9}{'numpy ms':>10}{'/ read':>8}{'numpy /':>9}"
+          f"{'2 threads':>11}")
+    for kind in ("raw", "gsf"):
+        row = table[kind]
+        read, one, numpy = (1e3 * row[name]["cpu_s"] / table["maps"]
+                            for name in ("read", "one", "numpy"))
+        # Threads gain wall time; the least of it is what the machine does when it is left alone.
+        gain = row["one"]["least_s"] / row["two"]["least_s"]
+        print(f"{kind + ', a map':24}{read:9.3f}{one:9.3f}{numpy:10.3f}{row['over_read']:8.2f}"
+              f"{row['numpy_over']:9.2f}{gain:11.2f}")
+
+
+def print_program(title, table):
+    print(f"\n{title}")
     print(f"{'':24}{'wall s':>9}{'cpu s':>9}{'peak MB':>19}")
     for key, row in table.items():
         if key.startswith("threads_"):
@@ -169,6 +235,8 @@ def main():
     parser.add_argument("--manoscope", type=Path, required=True, help="the program")
     parser.add_argument("--maps", type=int, default=64)
     parser.add_argument("--repetitions", type=int, default=7)
+    parser.add_argument("--reductions-only", action="store_true",
+                        help="leave out the twin and the whole measurement")
     parser.add_argument("--json", type=Path, help="also write every figure here")
     arguments = parser.parse_args()
     arguments.manoscope = arguments.manoscope.resolve()
@@ -177,12 +245,28 @@ def main():
         reduction = time_reduction(arguments.programs, arguments.maps, arguments.repetitions,
                                    Path(name))
         print_reduction(reduction)
-        measure = time_measure(arguments.programs, arguments.manoscope,
-                               min(3, arguments.repetitions), Path(name))
-        print_measure(measure)
+        linear = []
+        for size, n_maps, dropouts in (((1024, 192), arguments.maps, 0.0),
+                                       ((1024, 192), arguments.maps, 0.01),
+                                       ((4096, 768), max(2, arguments.maps // 4), 0.0)):
+            frames = Path(name) / "frames"
+            linear.append(time_linear(arguments.programs, size, n_maps, dropouts,
+                                      2 * arguments.repetitions, frames))
+            shutil.rmtree(frames)
+            print_linear(linear[-1])
+        if arguments.reductions_only:
+            return
+        experiment = Path(name) / "experiment"
+        twin = time_twin(arguments.manoscope, experiment)
+        print_program(f"manoscope twin S1: {twin['maps']} wall states, nine of them coupled to the "
+                      "flow, and their maps of 1024 x 192; one run", twin)
+        measure = time_measure(arguments.manoscope, min(3, arguments.repetitions), experiment,
+                               Path(name) / "result")
+        print_program(f"manoscope measure: {measure['maps']} maps of 1024 x 192 to p(x), figures "
+                      f"and report; median of {measure['repetitions']}", measure)
     if arguments.json:
-        arguments.json.write_text(json.dumps({"reduction": reduction, "measure": measure},
-                                             indent=1) + "\n", encoding="utf-8")
+        figures = {"reduction": reduction, "linear": linear, "twin": twin, "measure": measure}
+        arguments.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -22,30 +22,13 @@ inline twin::InterferometerOptions full_camera() {
 }
 
 /// Deflection of map `index` of `n`: a clamped bulge falling along the flow, between -10 and 40 um.
-inline twin::UniformCurve bulge(const flow::Channel& channel, int index, int n) {
+inline twin::ChannelCurve bulge(const flow::Channel& channel, int index, int n) {
   constexpr Index kNodes = 401;
   const double high = -10e-6 + 50e-6 * index / std::max(1, n - 1);
   const double length = channel.length.si(), reach = channel.width.si() / std::numbers::pi;
   const Array1 x = Array1::LinSpaced(kNodes, 0.0, length);
   const Array1 ends = (1.0 - (-x / reach).exp()) * (1.0 - ((x - length) / reach).exp());
   return {channel.length, high * (1.0 - 0.5 * x / length) * ends};
-}
-
-/// small_s1() at full size: 25 levels and 8 flow rates, 33 maps.
-inline twin::Scenario full_scenario() {
-  twin::Scenario scenario = twin::small_s1();
-  scenario.name = "S1 (virtual, full size)";
-  scenario.camera = full_camera();
-  scenario.levels = {Pressure{}};
-  constexpr int kRatios = 23;
-  for (int k = 0; k <= kRatios; ++k) {
-    scenario.levels.push_back(150.0 * Pa * std::pow(50000.0 / 150.0, k / double{kRatios}));
-  }
-  scenario.flow_rates.clear();
-  for (const double rate : {5.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0}) {
-    scenario.flow_rates.push_back(rate * mL_per_min);
-  }
-  return scenario;
 }
 
 }  // namespace manoscope::bench

@@ -105,8 +105,8 @@ def fit_plane(a, b, v):
         following, _ = solve_weighted(*few, weight)
         change = np.abs(following - c).max()
         c = following
-        floor = max(1e-2 * median(size), 1e-300)
-        if change <= 0.1 * floor:
+        floor = max(1e-2 * median(size[::4].copy()), 1e-300)
+        if change <= floor:
             break
     residual, term = np.empty_like(v), np.empty_like(v)
     for _ in range(20):
@@ -320,7 +320,9 @@ def reduce_map(data, geometry, inputs):
     covariance = covariance * np.outer(scale, scale) * shared * (noise / sigma) ** 2
     zeta, independent, flags, design = width_average(g, height, good, noise, length_z)
     x = g.x[g.columns]
-    modes = design @ np.linalg.cholesky(covariance)
+    # Level plane, and what the trapezoid rule takes off a parabola across the width.
+    quadrature = zeta * (pitch_z / inputs["width_m"]) ** 2
+    modes = np.column_stack([design @ np.linalg.cholesky(covariance), quadrature])
     shift = slope_along(x, zeta, flags) * g.pitch_x / np.sqrt(12.0)
     top, top_sigma = crest(g, height, good, noise, shared, covariance[0, 0])
     return geometry, {

@@ -17,6 +17,7 @@
 #include "manoscope/maps/level.hpp"
 #include "manoscope/maps/noise.hpp"
 #include "manoscope/maps/reduce.hpp"
+#include "manoscope/twin/scenario_file.hpp"
 
 namespace manoscope::bench {
 namespace {
@@ -96,7 +97,7 @@ void despike(benchmark::State& state) {
 
 void width_average(benchmark::State& state) {
   const OneMap& one = one_map();
-  const maps::LeveledMap leveled = maps::level_map(*one.map, one.frame, std::nullopt, "map");
+  const maps::LeveledMap leveled = maps::level_map(*one.map, one.frame, {}, "map");
   for (auto _ : state) {
     benchmark::DoNotOptimize(maps::width_average(leveled.deflection, leveled.plane,
                                                  one.frame.length, one.frame.width, "map"));
@@ -106,7 +107,7 @@ void width_average(benchmark::State& state) {
 void reduce_map(benchmark::State& state) {
   const OneMap& one = one_map();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(maps::reduce_map(*one.map, one.frame, std::nullopt, "map"));
+    benchmark::DoNotOptimize(maps::reduce_map(*one.map, one.frame, {}, "map"));
   }
 }
 
@@ -160,6 +161,20 @@ void read_pressure_and_covariance(benchmark::State& state) {
   }
 }
 
+/// The 0.2 um nitride wall of S1 on the scenario's grid, from rest, to a residual of 1e-8.
+void wall_state(benchmark::State& state) {
+  const twin::Scenario scenario = twin::find_scenario("S1");
+  wall::FopplVonKarmanOptions options;
+  options.n_cells_x = scenario.wall_grid.n_cells_x;
+  options.n_cells_z = scenario.wall_grid.n_cells_z;
+  options.design_pressure = scenario.levels.back();
+  options.tolerance = 1e-8;
+  const wall::FopplVonKarman plate(scenario.wall, options);
+  const auto load = wall::WallLoad::uniform(10.0 * kPa);
+  for (auto _ : state) benchmark::DoNotOptimize(plate.equilibrium(load));
+}
+
+BENCHMARK(wall_state)->Unit(benchmark::kMillisecond);
 BENCHMARK(hash_file)->Unit(benchmark::kMillisecond);
 BENCHMARK(read_gsf)->Unit(benchmark::kMillisecond);
 BENCHMARK(to_channel_frame)->Unit(benchmark::kMillisecond);

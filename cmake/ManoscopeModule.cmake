@@ -10,6 +10,8 @@ target_compile_options(manoscope_options INTERFACE -Wall -Wextra -Wpedantic -Wsh
                        -Wno-sign-conversion -ffp-contract=off)
 # g++ 12 warns of overlaps inside std::string's operator+ that cannot happen (GCC bug 105651).
 target_compile_options(manoscope_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+# numerics/lanes.hpp inlines all that takes a vector: how one is handed over does not matter.
+target_compile_options(manoscope_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
 if(MANOSCOPE_WARNINGS_AS_ERRORS)
   target_compile_options(manoscope_options INTERFACE -Werror)
 endif()
@@ -20,6 +22,9 @@ if(MANOSCOPE_SANITIZE)
   target_compile_options(manoscope_options INTERFACE -fsanitize=address,undefined
                          -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(manoscope_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(MANOSCOPE_FUZZ)
+  target_compile_options(manoscope_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 # Results must not depend on the number of threads that Eigen finds.
 target_compile_definitions(manoscope_options INTERFACE EIGEN_DONT_PARALLELIZE)
@@ -35,6 +40,9 @@ function(manoscope_test name)
     MANOSCOPE_PYTHON="${MANOSCOPE_PYTHON}"
     MANOSCOPE_PROGRAM="${CMAKE_BINARY_DIR}/manoscope")
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+  if(TARGET manoscope-hdf5-reader)  # of module io; what lies above may read HDF5 through it
+    add_dependencies(${name} manoscope-hdf5-reader)
+  endif()
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600)
 endfunction()

@@ -33,8 +33,8 @@ TEST_P(Practice, PressureAndDropsAgreeWithTheTruth) {
       pipeline::judge(measurement, twin::read_truth(folder_), 1.6 * mm, 13.0 * mm);
   ASSERT_EQ(judgements.size(), experiment.flow.size());
   for (const auto& run : judgements) {
-    // What 10 Pa of noise on each pressure label leaves: 1 % of the drop, 20 Pa on the lowest ones.
-    EXPECT_LE(run.reading.rms, std::max(20.0, 0.01 * run.true_drop)) << run.run;
+    // Labels of 10 Pa taken together leave 4 Pa, maps and the wall's own neighbourhood as much.
+    EXPECT_LE(run.reading.rms, 10.0) << run.run;
     EXPECT_LE(std::abs(run.drop_error), std::max(50.0, 0.015 * run.true_drop)) << run.run;
     EXPECT_EQ(run.reading.n_silent, 0) << run.run;
   }

@@ -6,6 +6,8 @@
 - Every `manoscope ...` command in a fenced sh block names a subcommand that `manoscope --help`
   lists, with long options that `manoscope SUBCOMMAND --help` lists.
 - Every `make TARGET` there is a target of the Makefile.
+- Every scenario in a fenced toml block (one with a line `scenario = 1`) is made by `manoscope twin`,
+  seen by a small camera.
 
 usage: tools/check_docs.py [--program build/manoscope] [ROOT]
 exit code 0: all hold, 1: some do not, 2: the program cannot be asked
@@ -16,6 +18,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -117,6 +120,19 @@ def shell_commands(path):
                 command.append(word)
 
 
+def scenarios(path):
+    """(line number, text) of every whole scenario in the fenced toml blocks of a file."""
+    block, start = [], 0
+    for number, line, language in [*split_fences(path.read_text(encoding="utf-8")), (0, "", None)]:
+        if language == "toml":
+            start = start or number
+            block.append(line)
+            continue
+        if any(re.match(r"scenario\s*=\s*1\b", line) for line in block):
+            yield start, "\n".join(block) + "\n"
+        block, start = [], 0
+
+
 class Program:
     """What the program says of itself in its help texts."""
 
@@ -143,6 +159,17 @@ class Program:
                 if match:
                     names.add(match.group(1))
         return names
+
+    def twin_fault(self, scenario):
+        """What `manoscope twin` has against a scenario, "" if it makes it."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "scenario.toml"
+            path.write_text(scenario, encoding="utf-8")
+            run = subprocess.run(
+                [self.path, "twin", path, "-o", Path(folder) / "out", "--size", "64x32"],
+                capture_output=True, text=True, timeout=300, check=False,
+            )
+            return "" if run.returncode == 0 else run.stderr.strip() or f"exit {run.returncode}"
 
     def options(self, subcommand):
         return set(re.findall(r"--[a-z][a-z0-9-]*", self.help(subcommand) + self.help()))
@@ -177,6 +204,15 @@ def command_faults(root, path, program, targets):
     return faults
 
 
+def scenario_faults(root, path, program):
+    faults = []
+    for number, text in scenarios(path):
+        fault = program.twin_fault(text)
+        if fault:
+            faults.append(f"{path.relative_to(root)}:{number}: the scenario cannot be made: {fault}")
+    return faults
+
+
 def make_targets(root):
     makefile = root / "Makefile"
     if not makefile.is_file():
@@ -195,6 +231,7 @@ def check(root, program):
     targets = make_targets(root)
     for path in markdown_files(root):
         faults += link_faults(root, path) + command_faults(root, path, program, targets)
+        faults += scenario_faults(root, path, program)
     return faults
 
 

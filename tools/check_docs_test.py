@@ -11,7 +11,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import check_docs
 
 PROGRAM = """#!/bin/sh
-if [ "$1" = measure ]; then
+if [ "$1" = twin ] && [ "$2" != --help ]; then
+  grep -q 'name = "sound"' "$2" || { echo 'name is missing' >&2; exit 2; }
+elif [ "$1" = measure ]; then
   echo 'Usage: manoscope measure [OPTIONS] experiment'
   echo '  -o,--output TEXT  where a word such as predict may stand'
 else
@@ -52,6 +54,12 @@ class CheckDocs(unittest.TestCase):
         self.assertEqual(len(faults), 1, faults)
         for word in words:
             self.assertIn(word, faults[0])
+
+    def test_a_scenario_must_be_one_that_the_program_makes(self):
+        sound = '# A\n```toml\nscenario = 1\nname = "sound"\n```\n'
+        self.assertEqual(self.faults(sound), [])
+        self.assertEqual(self.faults('```toml\nmanoscope = 1\n```\n'), [])  # not a scenario
+        self.assert_one_fault(sound.replace("sound", "faulty"), "README.md:3", "name is missing")
 
     def test_good_links_pass(self):
         self.assertEqual(

@@ -78,6 +78,11 @@ void Command::positional(const std::string& name, std::filesystem::path& value,
   impl_->app->add_option(name, value, help)->required()->type_name("");
 }
 
+void Command::optional_positional(const std::string& name, std::string& value,
+                                  const std::string& help) {
+  impl_->app->add_option(name, value, help)->type_name("");
+}
+
 void Command::positional(const std::string& name, std::vector<std::filesystem::path>& value,
                          const std::string& help) {
   impl_->app->add_option(name, value, help)->required()->type_name("");
@@ -138,7 +143,8 @@ Command Program::command(const std::string& name, const std::string& help) {
   app.add_option("--seed", context.seed, "seed of everything that is drawn at random")
       ->type_name("N")
       ->group(kGroup);
-  app.add_flag("--quiet", context.quiet, "no progress, no remarks")->group(kGroup);
+  app.add_flag("--quiet", context.quiet, "no progress, no remarks, only the shortest tables")
+      ->group(kGroup);
   app.add_flag("--json", context.json, "machine-readable output, SI units")->group(kGroup);
   return Command(std::move(impl));
 }

@@ -13,5 +13,6 @@ void add_inspect(Program& program);
 void add_judge(Program& program);
 void add_measure(Program& program);
 void add_report(Program& program);
+void add_twin(Program& program);
 
 }  // namespace manoscope::cli

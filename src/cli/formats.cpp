@@ -17,12 +17,16 @@ void add_formats(Program& program) {
       if (context.json) {
         list.push_back({{"name", reader->name()},
                         {"description", reader->description()},
-                        {"extensions", reader->extensions()}});
+                        {"extensions", reader->extensions()},
+                        {"orientation", reader->orientation()}});
       } else {
-        text += fmt::format("{:<10} {:<20} {}\n", reader->name(),
+        text += fmt::format("{:<10} {:<26} {}\n", reader->name(),
                             fmt::format("{}", fmt::join(reader->extensions(), " ")),
                             reader->description());
       }
+    }
+    if (!context.quiet) {
+      text += "\nOther formats are read through the program Gwyddion, where it is installed.\n";
     }
     print(context.json ? list.dump(2) + "\n" : text);
   });

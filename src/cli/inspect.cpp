@@ -1,9 +1,12 @@
 // manoscope inspect FILE...: what map files hold.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/io/map_picture.hpp"
 #include "manoscope/io/map_summary.hpp"
 
 namespace manoscope::cli {
@@ -16,7 +19,12 @@ json number(const std::optional<double>& value) { return value ? json(*value) : 
 json to_json(const io::MapSummary& summary) {
   json channels = json::array();
   for (const io::ChannelSummary& channel : summary.channels) {
+    json settings = json::array();
+    for (const auto& [name, value] : channel.settings) {
+      settings.push_back({{"name", name}, {"value", value}});
+    }
     channels.push_back({{"name", channel.name},
+                        {"page", channel.page},
                         {"nx", channel.nx},
                         {"ny", channel.ny},
                         {"pitch_x_m", number(channel.pitch_x_m)},
@@ -24,21 +32,34 @@ json to_json(const io::MapSummary& summary) {
                         {"size_x_m", number(channel.size_x_m)},
                         {"size_y_m", number(channel.size_y_m)},
                         {"unit", channel.unit},
+                        {"file_unit", channel.file_unit},
+                        {"offset_x_pixels", channel.offset_x},
+                        {"offset_y_pixels", channel.offset_y},
                         {"missing", channel.missing},
                         {"min", number(channel.min)},
                         {"max", number(channel.max)},
                         {"mean", number(channel.mean)},
-                        {"rms", number(channel.rms)}});
+                        {"rms", number(channel.rms)},
+                        {"settings", settings},
+                        {"warnings", channel.warnings}});
   }
-  return {{"file", summary.file.string()}, {"format", summary.format}, {"channels", channels}};
+  return {{"file", summary.file.string()},
+          {"format", summary.format},
+          {"orientation", summary.orientation},
+          {"channels", channels}};
 }
 
 std::string length_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g} mm", *value * 1e3) : std::string("unknown");
 }
 
-std::string to_text(const io::MapSummary& summary) {
+std::string pitch_text(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g} um", *value * 1e6) : std::string("unknown");
+}
+
+std::string to_text(const io::MapSummary& summary, bool shortest) {
   std::string text = fmt::format("{}  ({})\n", summary.file.string(), summary.format);
+  if (!shortest) text += fmt::format("  {}\n", summary.orientation);
   for (const io::ChannelSummary& channel : summary.channels) {
     const bool is_length = channel.unit == "m";
     const double scale = is_length ? 1e6 : 1.0;
@@ -47,11 +68,26 @@ std::string to_text(const io::MapSummary& summary) {
       return v ? fmt::format("{:.6g} {}", *v * scale, unit) : std::string("none");
     };
     text += fmt::format(
-        "  {}: {} x {} pixels, {} x {} ({} missing)\n"
+        "  {}{}: {} x {} pixels, {} x {} ({} missing)\n"
         "    min {}, max {}, mean {}, rms {}\n",
+        summary.channels.size() > 1 ? fmt::format("#{} ", channel.page) : std::string(),
         channel.name.empty() ? "map" : channel.name, channel.nx, channel.ny,
         length_text(channel.size_x_m), length_text(channel.size_y_m), channel.missing,
         value(channel.min), value(channel.max), value(channel.mean), value(channel.rms));
+    for (const std::string& warning : channel.warnings) {
+      text += fmt::format("    note: {}\n", warning);
+    }
+    if (shortest) continue;
+    text += fmt::format("    pixel {} x {}, unit in the file: {}\n", pitch_text(channel.pitch_x_m),
+                        pitch_text(channel.pitch_y_m),
+                        channel.file_unit.empty() ? "none" : channel.file_unit);
+    if (channel.offset_x != 0 || channel.offset_y != 0) {
+      text += fmt::format("    first pixel at column {}, row {} of the camera\n", channel.offset_x,
+                          channel.offset_y);
+    }
+    for (const auto& [name, setting] : channel.settings) {
+      text += fmt::format("    {}: {}\n", name, setting);
+    }
   }
   return text;
 }
@@ -61,21 +97,35 @@ std::string to_text(const io::MapSummary& summary) {
 void add_inspect(Program& program) {
   struct Args {
     std::vector<std::filesystem::path> files;
+    std::filesystem::path preview;
     io::ReadOptions reading;
   };
   auto args = std::make_shared<Args>();
   Command command = program.command("inspect", "Tell what map files hold");
   command.positional("files", args->files, "map files");
+  command.option("--preview", args->preview,
+                 "draw the map as PNG: viridis, missing pixels grey (one map file)", false);
   command.options(args->reading, "Reading");
   command.action([args](const Context& context) {
+    constexpr int kLongestSide = 512, kTerminalColumns = 48;
+    if (!args->preview.empty() && args->files.size() != 1) {
+      throw InputError("--preview", fmt::format("is given with {} map files", args->files.size()),
+                       "Draw one map at a time");
+    }
+    const bool on_terminal = isatty(STDOUT_FILENO) == 1 && !context.quiet && !context.json;
     json list = json::array();
     std::string text;
     for (const auto& file : args->files) {
-      const io::MapSummary summary = io::summarise_map(file, args->reading);
+      const io::MapInspection map = io::inspect_map(file, args->reading);
       if (context.json) {
-        list.push_back(to_json(summary));
+        list.push_back(to_json(map.summary));
       } else {
-        text += to_text(summary);
+        text += to_text(map.summary, context.quiet);
+      }
+      if (on_terminal)
+        text += io::terminal_text(io::picture_of(map.grid, map.shown, kTerminalColumns));
+      if (!args->preview.empty()) {
+        io::write_png(args->preview, io::picture_of(map.grid, map.shown, kLongestSide));
       }
     }
     print(context.json ? list.dump(2) + "\n" : text);

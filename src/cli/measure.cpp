@@ -12,6 +12,7 @@ namespace manoscope::cli {
 void add_measure(Program& program) {
   struct Args {
     std::filesystem::path experiment, out;
+    bool overwrite = false;
     pipeline::MeasureOptions options;
     report::ReportOptions report;
   };
@@ -19,19 +20,29 @@ void add_measure(Program& program) {
   Command command = program.command("measure", "Measure p(x): maps in, result and report out");
   command.positional("experiment", args->experiment,
                      "folder with experiment.toml, or the file itself");
-  command.option("-o,--output", args->out, "folder for the result", true);
+  command.option("-o,--output", args->out,
+                 "folder for the result; an earlier one of the same experiment is replaced", true);
+  command.flag("--overwrite", args->overwrite, "replace a result of another experiment, too");
   command.options(args->options, "Measurement");
   command.options(args->report, "Report");
   command.action([args](const Context& context) {
     const auto experiment = experiment::read_experiment(args->experiment);
+    const bool replaces =
+        results::check_destination(args->out, pipeline::title_of(experiment.name), args->overwrite);
     const auto measurement =
         pipeline::measure(experiment, args->options, context.threads, context.monitor);
     context.monitor.checkpoint();
     results::write_result(args->out, measurement, report::make_report(measurement, args->report));
-    print(context.json ? summary_json(measurement, args->out) : summary_text(measurement));
+    if (context.json) {
+      print(summary_json(measurement, args->out));
+    } else {
+      const bool table = !context.quiet && measurement.flow_rate.size() > 0;
+      print((table ? pressure_text(measurement) + "\n" : "") + summary_text(measurement));
+    }
     for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
     if (!context.json) {
-      remark(context, fmt::format("result in {}, report in {}", args->out.string(),
+      remark(context, fmt::format("result in {}{}, report in {}", args->out.string(),
+                                  replaces ? " (the earlier one is replaced)" : "",
                                   (args->out / "report.html").string()));
     }
   });

@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "manoscope/core/uncertainty.hpp"
+#include "manoscope/report/wording.hpp"
+#include "manoscope/twin/scenario_file.hpp"
+#include "text_table.hpp"
 
 namespace manoscope::cli {
 namespace {
@@ -23,36 +26,38 @@ std::string drop_text(double value, double standard_uncertainty) {
   return fmt::format("{:.{}f} ± {:.{}f}", value, digits, expanded, digits);
 }
 
-/// Pads to a width counted in characters on the screen, not bytes.
-std::string pad(const std::string& text, std::size_t width) {
-  std::size_t shown = 0;
-  for (const char byte : text) shown += (static_cast<unsigned char>(byte) & 0xC0) != 0x80;
-  return (shown < width ? std::string(width - shown, ' ') : std::string()) + text;
+/// Whether QR and dp_e agree, in the words of the report.
+std::string verdict(double en_number) {
+  if (!std::isfinite(en_number)) return "none";
+  return en_number <= 1.0 ? "agrees" : "disagrees";
 }
 
-std::string table(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      std::size_t shown = 0;
-      for (const char byte : row[c]) shown += (static_cast<unsigned char>(byte) & 0xC0) != 0x80;
-      widths[c] = std::max(widths[c], shown);
+/// p(x) of the runs [first, last) at stations spread evenly over the channel.
+std::string pressure_table(const results::Measurement& m, Index first, Index last) {
+  constexpr int kRows = 13;
+  std::vector<std::vector<std::string>> rows{{"x [mm]"}};
+  for (Index r = first; r < last; ++r) {
+    rows.front().push_back("p(x) " + m.run[static_cast<std::size_t>(r)] + " [Pa]");
+  }
+  for (int i = 0; i < kRows; ++i) {
+    const double x = m.channel_length * (i + 0.5) / kRows;
+    Index nearest = 0;
+    (m.x - x).abs().minCoeff(&nearest);
+    std::vector<std::string> row{fmt::format("{:.2f}", m.x[nearest] * 1e3)};
+    for (Index r = first; r < last; ++r) {
+      row.push_back(drop_text(m.pressure(r, nearest), m.pressure_uncertainty(r, nearest)));
     }
+    rows.push_back(std::move(row));
   }
-  std::string text;
-  for (const auto& row : rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) text += pad(row[c], widths[c] + (c > 0 ? 2 : 0));
-    text += '\n';
-  }
-  return text;
+  return text_table(rows);
 }
 
 }  // namespace
 
 std::string summary_text(const results::Measurement& m) {
   constexpr double kMlPerMin = 60e6;
-  std::vector<std::vector<std::string>> rows{
-      {"run", "Q [mL/min]", "Re", "section [mm]", "dp_e ± U [Pa]", "QR ± U [Pa]", "E_n"}};
+  std::vector<std::vector<std::string>> rows{{"run", "Q [mL/min]", "Re", "section [mm]",
+                                              "dp_e ± U [Pa]", "QR ± U [Pa]", "E_n", "verdict"}};
   for (Index r = 0; r < m.flow_rate.size(); ++r) {
     const double start = m.test_section(r, 0), end = m.test_section(r, 1);
     rows.push_back(
@@ -62,15 +67,16 @@ std::string summary_text(const results::Measurement& m) {
                               : std::string("none"),
          drop_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
          drop_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
-         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-")});
+         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-"),
+         verdict(m.en_number[r])});
   }
   std::string text;
   if (m.flow_rate.size() > 0) {
-    text += table(rows);
-    text +=
+    text += "Does the flow agree?\n" + text_table(rows);
+    text += fmt::format(
         "U: expanded uncertainty, k = 2. dp_e: drop read off the wall over the section. QR: the "
-        "paper's eq. (4),\nno inertia or entry flow; its U takes flow rate and viscosity as "
-        "exact.\n";
+        "paper's eq. (4),\nno inertia or entry flow. {}\n",
+        report::resistance_uncertainty_text(m));
   } else {
     text +=
         fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
@@ -79,20 +85,13 @@ std::string summary_text(const results::Measurement& m) {
 }
 
 std::string pressure_text(const results::Measurement& m) {
-  constexpr int kRows = 13;
-  std::vector<std::vector<std::string>> rows{{"x [mm]"}};
-  for (const std::string& run : m.run) rows.front().push_back("p(x) " + run + " [Pa]");
-  for (int i = 0; i < kRows; ++i) {
-    const double x = m.channel_length * (i + 0.5) / kRows;
-    Index nearest = 0;
-    (m.x - x).abs().minCoeff(&nearest);
-    std::vector<std::string> row{fmt::format("{:.2f}", m.x[nearest] * 1e3)};
-    for (Index r = 0; r < m.flow_rate.size(); ++r) {
-      row.push_back(drop_text(m.pressure(r, nearest), m.pressure_uncertainty(r, nearest)));
-    }
-    rows.push_back(std::move(row));
+  constexpr Index kRunsAcross = 4;  // 80 columns of a terminal
+  std::string text = "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)\n";
+  for (Index first = 0; first < m.flow_rate.size(); first += kRunsAcross) {
+    if (first > 0) text += '\n';
+    text += pressure_table(m, first, std::min(first + kRunsAcross, m.flow_rate.size()));
   }
-  return table(rows);
+  return text;
 }
 
 std::string summary_json(const results::Measurement& m, const std::filesystem::path& folder) {
@@ -114,42 +113,61 @@ std::string summary_json(const results::Measurement& m, const std::filesystem::p
   return json{{"output", folder.string()}, {"runs", runs}, {"warnings", m.warnings}}.dump(2) + "\n";
 }
 
-std::string judgement_text(const std::vector<pipeline::RunJudgement>& judgements) {
-  std::vector<std::vector<std::string>> rows{
-      {"run", "section [mm]", "rms error [Pa]", "largest [Pa]", "no answer", "in 95 % bars",
-       "pull mean", "pull width", "true drop [Pa]", "drop error [Pa]"}};
-  for (const pipeline::RunJudgement& j : judgements) {
-    const auto total = j.reading.n_answered + j.reading.n_silent;
-    rows.push_back({j.run, fmt::format("{:.2f}-{:.2f}", j.x_start * 1e3, j.x_end * 1e3),
-                    fmt::format("{:.1f}", j.reading.rms), fmt::format("{:.1f}", j.reading.largest),
-                    fmt::format("{}/{}", j.reading.n_silent, total),
-                    fmt::format("{:.0f} %", 100.0 * j.reading.coverage),
-                    fmt::format("{:+.2f}", j.reading.pull_mean),
-                    fmt::format("{:.2f}", j.reading.pull_width), fmt::format("{:.0f}", j.true_drop),
-                    fmt::format("{:+.1f}", j.drop_error)});
+std::string twin_text(const twin::VirtualExperiment& made, const std::filesystem::path& folder) {
+  std::vector<std::vector<std::string>> rows{{"run", "inlet [Pa]", "outlet [Pa]", "drop [Pa]",
+                                              "parasitic [Pa]", "zeta max [um]", "Re", "S"}};
+  for (std::size_t i = 0; i < made.scalars.size(); ++i) {
+    const twin::RunScalars& run = made.scalars[i];
+    rows.push_back({made.truth.runs[i].run, fmt::format("{:.0f}", run.inlet.si()),
+                    fmt::format("{:.0f}", run.outlet.si()),
+                    fmt::format("{:.0f}", run.compliant_drop().si()),
+                    fmt::format("{:.0f}", run.parasitic.si()),
+                    fmt::format("{:.1f}", run.largest_deflection.in(um)),
+                    fmt::format("{:.0f}", run.reynolds), fmt::format("{:.2f}", run.speed_index)});
   }
-  return table(rows);
+  return fmt::format(
+      "{}: {} maps in {}, their truth in {}\n\nTrue values (S: speed of "
+      "the flow over that of the wall's waves)\n{}",
+      made.header.name, made.maps.size(), folder.string(), (folder / "truth").string(),
+      text_table(rows));
 }
 
-std::string judgement_json(const std::vector<pipeline::RunJudgement>& judgements) {
+std::string twin_json(const twin::VirtualExperiment& made, const std::filesystem::path& folder) {
   json runs = json::array();
-  for (const pipeline::RunJudgement& j : judgements) {
-    runs.push_back({{"run", j.run},
-                    {"x_start_m", number(j.x_start)},
-                    {"x_end_m", number(j.x_end)},
-                    {"answered", j.reading.n_answered},
-                    {"silent", j.reading.n_silent},
-                    {"rms_error_Pa", j.reading.rms},
-                    {"largest_error_Pa", j.reading.largest},
-                    {"mean_error_Pa", j.reading.mean},
-                    {"coverage", j.reading.coverage},
-                    {"pull_mean", j.reading.pull_mean},
-                    {"pull_width", j.reading.pull_width},
-                    {"true_drop_Pa", j.true_drop},
-                    {"drop_error_Pa", j.drop_error},
-                    {"drop_pull", j.drop_pull}});
+  for (std::size_t i = 0; i < made.scalars.size(); ++i) {
+    const twin::RunScalars& run = made.scalars[i];
+    runs.push_back({{"run", made.truth.runs[i].run},
+                    {"flow_rate_m3_s", run.flow_rate.si()},
+                    {"inlet_pressure_Pa", run.inlet.si()},
+                    {"outlet_pressure_Pa", run.outlet.si()},
+                    {"parasitic_drop_Pa", run.parasitic.si()},
+                    {"largest_deflection_m", run.largest_deflection.si()},
+                    {"reynolds", run.reynolds},
+                    {"speed_index", run.speed_index}});
   }
-  return json{{"runs", runs}}.dump(2) + "\n";
+  return json{{"name", made.header.name},
+              {"seed", made.header.seed},
+              {"folder", folder.string()},
+              {"maps", made.maps.size()},
+              {"runs", runs}}
+             .dump(2) +
+         "\n";
+}
+
+std::string scenarios_text() {
+  std::string text;
+  for (const auto& shipped : twin::shipped_scenarios()) {
+    text += fmt::format("{}  {}\n", shipped.name, shipped.title);
+  }
+  return text;
+}
+
+std::string scenarios_json() {
+  json list = json::array();
+  for (const auto& shipped : twin::shipped_scenarios()) {
+    list.push_back({{"name", shipped.name}, {"title", shipped.title}});
+  }
+  return json{{"scenarios", list}}.dump(2) + "\n";
 }
 
 }  // namespace manoscope::cli

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "manoscope/pipeline/judge.hpp"
 #include "manoscope/results/measurement.hpp"
+#include "manoscope/twin/virtual_experiment.hpp"
 
 namespace manoscope::cli {
 
@@ -17,8 +17,12 @@ std::string pressure_text(const results::Measurement& measurement);
 std::string summary_json(const results::Measurement& measurement,
                          const std::filesystem::path& folder);
 
-/// Judgements against truth, as a table and as JSON.
-std::string judgement_text(const std::vector<pipeline::RunJudgement>& judgements);
-std::string judgement_json(const std::vector<pipeline::RunJudgement>& judgements);
+/// A virtual experiment that was written: its runs as a table, and as JSON in SI units.
+std::string twin_text(const twin::VirtualExperiment& made, const std::filesystem::path& folder);
+std::string twin_json(const twin::VirtualExperiment& made, const std::filesystem::path& folder);
+
+/// The scenarios that ship.
+std::string scenarios_text();
+std::string scenarios_json();
 
 }  // namespace manoscope::cli

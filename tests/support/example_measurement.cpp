@@ -57,6 +57,7 @@ void add_calibration(Measurement& m, const ExampleSize& size) {
   const Index n_l = size.n_levels;
   m.level_pressure = Array1(n_l);
   m.level_pressure_uncertainty = Array1(n_l);
+  m.level_estimate = m.level_estimate_uncertainty = Array1(n_l);
   m.static_deflection = Array2(n_l, size.n_x);
   m.crest_deflection = Array1(n_l);
   for (Index level = 0; level < n_l; ++level) {
@@ -66,6 +67,8 @@ void add_calibration(Measurement& m, const ExampleSize& size) {
             : static_cast<std::size_t>(level * static_cast<Index>(kWall.size() - 1) / (n_l - 1));
     m.level_pressure(level) = kWall[row][0];
     m.level_pressure_uncertainty(level) = row == 0 ? 0.0 : 10.0;
+    m.level_estimate(level) = m.level_pressure(level);
+    m.level_estimate_uncertainty(level) = 0.5 * m.level_pressure_uncertainty(level);
     m.crest_deflection(level) = 1.5e-6 * kWall[row][1] + 1e-8 * noise.normal();
     for (Index ix = 0; ix < size.n_x; ++ix) {
       m.static_deflection(level, ix) =
@@ -77,7 +80,7 @@ void add_calibration(Measurement& m, const ExampleSize& size) {
 }
 
 void add_empty_runs(Measurement& m, Index n_r, Index n_x) {
-  m.flow_rate = nan1(n_r);
+  m.flow_rate = m.flow_rate_uncertainty = nan1(n_r);
   for (Array2* array :
        {&m.deflection, &m.deflection_uncertainty, &m.pressure, &m.pressure_uncertainty,
         &m.pressure_lower, &m.pressure_upper, &m.resistance_pressure}) {
@@ -141,6 +144,7 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   m.run.push_back("Q" +
                   std::to_string(static_cast<int>(kFlowRates[static_cast<std::size_t>(run)])));
   m.flow_rate(run) = Q;
+  m.flow_rate_uncertainty(run) = 0.01 * Q;
   m.test_section.row(run) << kStart, kEnd;
 
   const auto at = [&](double x, const Array1& values) {
@@ -229,6 +233,21 @@ void add_crossings(Measurement& m, bool wanted) {
   m.crossing_x_uncertainty = Array1::Constant(m.crossing_x.size(), 2e-5);
 }
 
+void add_response(Measurement& m) {
+  const double length = m.channel_length, width = m.channel_width;
+  m.response_x = Array1::LinSpaced(40, -0.03 * length, 1.03 * length);
+  m.response_z = Array1::LinSpaced(12, -0.8 * width, 0.8 * width);
+  m.wall_response = Array2::Zero(12, 40);
+  for (Index iz = 0; iz < 12; ++iz) {
+    for (Index ix = 0; ix < 40; ++ix) {
+      const double u = m.response_x(ix) / length, v = 2.0 * m.response_z(iz) / width;
+      if (u < 0.0 || u > 1.0 || std::abs(v) > 1.0) continue;
+      m.wall_response(iz, ix) = 30e-6 * (1.0 - v * v) * std::min(1.0, 20.0 * std::min(u, 1.0 - u));
+    }
+  }
+  m.wall_response(3, 17) = std::nan("");
+}
+
 void add_maps(Measurement& m, const ExampleSize& size) {
   RandomStream noise(size.seed, "maps");
   for (Index level = 0; level < size.n_levels; ++level)
@@ -236,12 +255,21 @@ void add_maps(Measurement& m, const ExampleSize& size) {
   for (Index run = 0; run < size.n_runs; ++run) m.map.push_back("f" + std::to_string(run) + ".gsf");
   const auto n_m = static_cast<Index>(m.map.size());
   m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n_m);
+  m.map_shift = m.map_shift_uncertainty = m.map_shift_across = m.map_rotation = Array1(n_m);
+  m.map_mended = m.map_rim_bend = m.map_rim_bend_uncertainty = Array1(n_m);
   for (Index map = 0; map < n_m; ++map) {
     m.map_tilt_x(map) = 3e-5 * noise.normal();
     m.map_tilt_z(map) = 8e-5 * noise.normal();
     m.map_noise(map) = 20e-9 * (1.0 + 0.02 * noise.normal());
     m.map_missing(map) = noise.uniform(0.0, 0.02);
     m.map_spikes(map) = noise.uniform(0.0, 0.001);
+    m.map_shift(map) = noise.uniform(-8e-6, 8e-6);
+    m.map_shift_uncertainty(map) = 0.3e-6;
+    m.map_shift_across(map) = noise.uniform(-8e-6, 8e-6);
+    m.map_rotation(map) = 1e-4 * noise.normal();
+    m.map_mended(map) = noise.uniform(0.0, 0.002);
+    m.map_rim_bend(map) = 1e-9 * noise.normal();
+    m.map_rim_bend_uncertainty(map) = 1e-9;
     m.inputs += m.map[static_cast<std::size_t>(map)] + "  " + std::string(64, 'a') + "\n";
   }
 }
@@ -290,6 +318,7 @@ Measurement example_measurement(const ExampleSize& size) {
   m.channel_height = kHeight;
   m.channel_height_uncertainty = 0.5e-6;
   m.viscosity = kViscosity;
+  m.viscosity_uncertainty = 5e-6;
   m.density = kDensity;
   m.x = (Array1::LinSpaced(size.n_x, 0.0, static_cast<double>(size.n_x - 1)) + 0.5) * kLength /
         static_cast<double>(size.n_x);
@@ -298,6 +327,7 @@ Measurement example_measurement(const ExampleSize& size) {
   for (Index run = 0; run < size.n_runs; ++run) add_run(m, run, size);
   add_crossings(m, size.crossings);
   add_maps(m, size);
+  add_response(m);
   return m;
 }
 

@@ -55,10 +55,11 @@ Profile exact_profile(const Array1& x, const F& f) {
   return profile;
 }
 
+/// A level at 0 Pa without uncertainty is one vented to air.
 inline calibration::Level level(std::string name, double pressure_Pa, double uncertainty_Pa,
                                 Profile profile) {
   return {std::move(name), Pressure::from_si(pressure_Pa), Pressure::from_si(uncertainty_Pa),
-          std::move(profile)};
+          std::move(profile), pressure_Pa == 0.0 && uncertainty_Pa == 0.0 ? 0.0 : 1.0};
 }
 
 /// A calibration of one station: pressures and deflections, all with the same uncertainties.

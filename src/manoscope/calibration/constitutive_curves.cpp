@@ -63,4 +63,14 @@ std::vector<ConstitutiveCurve::LevelWeight> ConstitutiveCurve::level_weights(
   return weights;
 }
 
+std::vector<Level> ConstitutiveCurves::estimated_levels() const {
+  std::vector<Level> estimated = levels;
+  const Array1 uncertainty = level_uncertainty();
+  for (std::size_t k = 0; k < estimated.size(); ++k) {
+    estimated[k].pressure = Pressure::from_si(level_pressure[static_cast<Index>(k)]);
+    estimated[k].uncertainty = Pressure::from_si(uncertainty[static_cast<Index>(k)]);
+  }
+  return estimated;
+}
+
 }  // namespace manoscope::calibration

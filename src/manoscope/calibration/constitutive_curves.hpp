@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "manoscope/calibration/levels.hpp"
@@ -57,9 +58,23 @@ class ConstitutiveCurve {
 /// Source: Ozsun et al. 2013, section III A: "position-dependent (local) constitutive curves".
 struct ConstitutiveCurves {
   Array1 x;                   ///< (n_x) m, stations
-  std::vector<Level> levels;  ///< ascending; curve errors come from their profiles and labels
+  std::vector<Level> levels;  ///< ascending in their labels, as read
+  /// (n_levels) Pa: the pressure of each level that the curves go through; the label itself, or
+  /// what all labels together say of it (estimate_labels()).
+  Array1 level_pressure;
+  /// (n_levels, n_levels): how those pressures follow the labels.
+  Matrix label_response;
+  /// (n_levels, n_errors) Pa: how the errors of the labels, independent variables of unit variance,
+  /// move those pressures; and what the variables are called.
+  Matrix label_effect;
+  std::vector<std::string> label_error;
   /// (n_x) curve of each station; empty where fewer than two levels count.
   std::vector<std::optional<ConstitutiveCurve>> curves;
+
+  /// Standard uncertainty of each level's pressure, (n_levels) Pa.
+  Array1 level_uncertainty() const { return label_effect.rowwise().norm().array(); }
+  /// The levels with the pressures that the curves go through, and their uncertainties.
+  std::vector<Level> estimated_levels() const;
 };
 
 }  // namespace manoscope::calibration

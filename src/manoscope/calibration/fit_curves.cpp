@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manoscope/calibration/joint_labels.hpp"
 #include "manoscope/core/error.hpp"
 
 namespace manoscope::calibration {
@@ -22,7 +23,9 @@ std::vector<Group> group_levels(const std::vector<Level>& levels, double pooling
       const Level& first = levels[static_cast<std::size_t>(groups.back().front())];
       const double doubt = std::hypot(first.uncertainty.si(), level.uncertainty.si());
       const bool both_uncertain = first.uncertainty > Pressure{} && level.uncertainty > Pressure{};
-      if (both_uncertain && (level.pressure - first.pressure).si() < pooling * doubt) {
+      const double step = (level.pressure - first.pressure).si();
+      // Estimated together, levels may change places with their neighbours.
+      if (step <= 0.0 || (both_uncertain && step < pooling * doubt)) {
         groups.back().push_back(k);
         continue;
       }
@@ -30,6 +33,31 @@ std::vector<Group> group_levels(const std::vector<Level>& levels, double pooling
     groups.push_back({k});
   }
   return groups;
+}
+
+/// The pressures that the curves go through, and the errors they share.
+void settle_pressures(ConstitutiveCurves& curves, bool joint_labels) {
+  const auto n = static_cast<Index>(curves.levels.size());
+  if (joint_labels) {
+    if (const auto joint = estimate_labels(curves.levels)) {
+      curves.level_pressure = joint->pressure;
+      curves.label_response = joint->response;
+      curves.label_effect = joint->root;
+      for (Index j = 0; j < n; ++j) {
+        curves.label_error.push_back(fmt::format("pressure labels together, {}", j + 1));
+      }
+      return;
+    }
+  }
+  curves.level_pressure = Array1(n);
+  curves.label_response = Matrix::Identity(n, n);
+  curves.label_effect = Matrix::Zero(n, n);
+  for (Index k = 0; k < n; ++k) {
+    const Level& level = curves.levels[static_cast<std::size_t>(k)];
+    curves.level_pressure[k] = level.pressure.si();
+    curves.label_effect(k, k) = level.uncertainty.si();
+    curves.label_error.push_back("label of " + level.name);
+  }
 }
 
 class StationFitter {
@@ -134,8 +162,10 @@ ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions&
   ConstitutiveCurves result;
   result.levels = sort_levels(std::move(levels));
   result.x = result.levels.front().profile.x;
-  const PressureScale scale = fit_pressure_scale(result.levels);
-  const StationFitter fitter(result.levels, options);
+  settle_pressures(result, options.joint_labels);
+  const std::vector<Level> estimated = result.estimated_levels();
+  const PressureScale scale = fit_pressure_scale(estimated);
+  const StationFitter fitter(estimated, options);
   for (Index ix = 0; ix < result.x.size(); ++ix) {
     auto knots = fitter.knots(ix);
     if (knots.size() < 2) {

@@ -16,14 +16,16 @@ Level merge(const std::vector<Level>& levels, std::size_t first, std::size_t las
   Level merged = levels[first];
   const auto n = static_cast<double>(last - first);
   std::vector<Profile> profiles;
-  double variance = 0.0;
+  double variance = 0.0, gauge_share = 0.0;
   for (std::size_t k = first; k < last; ++k) {
     profiles.push_back(levels[k].profile);
     variance += levels[k].uncertainty.si() * levels[k].uncertainty.si();
+    gauge_share += levels[k].gauge_share;
     if (k > first) merged.name += " + " + levels[k].name;
   }
   merged.profile = mean_profile(profiles);
   merged.uncertainty = Pressure::from_si(std::sqrt(variance) / n);
+  merged.gauge_share = gauge_share / n;
   return merged;
 }
 

@@ -15,8 +15,11 @@ namespace manoscope::calibration {
 struct Level {
   std::string name;        ///< of the reading, unique: its label error is one error variable
   Pressure pressure{};     ///< as read on the gauge
-  Pressure uncertainty{};  ///< standard, of this one reading alone; 0 = vented, exactly zero
+  Pressure uncertainty{};  ///< standard, of this one reading alone; 0 = taken as exact
   Profile profile;         ///< zeta(x; pressure)
+  /// Share of the label that was read on the gauge and so has its zero error: 0 for a map vented to
+  /// air, which is at exactly 0 Pa; in between for the mean of repeats of both kinds.
+  double gauge_share = 1.0;
 };
 
 /// Levels in ascending order of pressure; those read at the same pressure become one.

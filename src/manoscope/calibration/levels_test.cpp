@@ -83,6 +83,18 @@ TEST(SortLevels, KeepsRepeatedVentedMapsExactlyAtZero) {
   EXPECT_EQ(sorted[0].uncertainty.si(), 0.0);
 }
 
+TEST(SortLevels, KeepsTheShareOfRepeatsThatTheGaugeRead) {
+  std::vector<Level> levels{plain("v", 0, 0, 0), plain("b", 100, 10, 1e-6),
+                            plain("c", 200, 10, 2e-6)};
+  EXPECT_EQ(sort_levels(levels)[0].gauge_share, 0.0);
+  EXPECT_EQ(sort_levels(levels)[1].gauge_share, 1.0);
+  for (const char* name : {"g1", "g2", "g3"}) levels.push_back(plain(name, 0, 10, 1e-8));
+  const auto sorted = sort_levels(levels);
+  ASSERT_EQ(sorted.size(), 3U);
+  EXPECT_EQ(sorted[0].gauge_share, 0.75);
+  EXPECT_NEAR(sorted[0].uncertainty.si(), 10.0 * std::sqrt(3.0) / 4.0, 1e-12);
+}
+
 TEST(SortLevels, RefusesLevelsOnOtherStationsNamingTheMap) {
   std::vector<Level> levels{plain("a", 0, 0, 0), plain("b", 100, 10, 1e-6),
                             plain("odd", 200, 10, 2e-6)};

@@ -60,11 +60,14 @@ double PressureScale::derivative(double pressure) const {
 
 PressureScale fit_pressure_scale(const std::vector<Level>& levels) {
   MANO_ASSERT(levels.size() >= 2);
-  double largest = 0.0, smallest_step = (levels.back().pressure - levels.front().pressure).si();
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    largest = std::max(largest, std::abs(levels[k].pressure.si()));
-    if (k == 0) continue;
-    smallest_step = std::min(smallest_step, (levels[k].pressure - levels[k - 1].pressure).si());
+  std::vector<double> pressures;
+  for (const Level& level : levels) pressures.push_back(level.pressure.si());
+  std::sort(pressures.begin(), pressures.end());
+  const double largest = std::max(std::abs(pressures.front()), std::abs(pressures.back()));
+  double smallest_step = pressures.back() - pressures.front();
+  for (std::size_t k = 1; k < pressures.size(); ++k) {
+    const double step = pressures[k] - pressures[k - 1];
+    if (step > 0.0) smallest_step = std::min(smallest_step, step);
   }
   MANO_ASSERT(smallest_step > 0.0);
   // The curves hardly depend on p_s near its optimum: a coarse grid does.

@@ -33,7 +33,7 @@ class PressureScale {
 /// of squared distances from them, among p_s in ratio steps of 1.2 from a tenth of the smallest
 /// step between levels to a hundred times the largest pressure.
 ///
-/// @param levels  ascending in pressure, at least 2. Stations with fewer than 3 levels do not
+/// @param levels  at two pressures or more. Stations with fewer than 3 levels do not
 /// count.
 PressureScale fit_pressure_scale(const std::vector<Level>& levels);
 

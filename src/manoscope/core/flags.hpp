@@ -11,6 +11,8 @@ namespace manoscope {
 struct PixelFlag {
   static constexpr FlagBits no_data = 1;  ///< the instrument gave no height here
   static constexpr FlagBits spike = 2;    ///< stands alone against its neighbours
+  /// In a patch that stands off its surroundings by a sharp step of no known size.
+  static constexpr FlagBits fringe_order = 4;
 };
 
 /// Why a station of a profile does not count. Bits; 0 = good.

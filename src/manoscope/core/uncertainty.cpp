@@ -23,6 +23,8 @@ Matrix Uncertainty::covariance() const {
     effects.col(j) = modes[static_cast<std::size_t>(j)].effect.matrix();
   }
   Matrix result = effects * effects.transpose();
+  // A product by blocks may round the two halves differently.
+  result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
   result.diagonal() += independent.square().matrix();
   return result;
 }

@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "manoscope/core/unit_text.hpp"
-#include "manoscope/experiment/bounds.hpp"
-#include "manoscope/experiment/faults.hpp"
-#include "manoscope/experiment/table_reader.hpp"
+#include "manoscope/io/bounds.hpp"
 #include "manoscope/io/csv_table.hpp"
+#include "manoscope/io/faults.hpp"
+#include "manoscope/io/table_reader.hpp"
 
 namespace manoscope::experiment {
 
 /// One column a list may have. `unit.si == nullptr`: no unit in its head.
 struct ListColumn {
   const char* name;
-  UnitInfo unit;
-  Need need;
+  io::UnitInfo unit;
+  io::Need need;
 };
 
 /// A list of maps as CSV, its head checked against the columns that exist.
@@ -26,10 +26,10 @@ class CsvList {
  public:
   /// Reads the table; nullopt, with a fault added, if there is none to read.
   static std::optional<CsvList> read(const std::filesystem::path& path,
-                                     std::span<const ListColumn> columns, Faults& faults);
+                                     std::span<const ListColumn> columns, io::Faults& faults);
 
   const io::CsvTable& table() const { return table_; }
-  Place place(int line, const std::string& column) const { return {table_.path, line, column}; }
+  io::Place place(int line, const std::string& column) const { return {table_.path, line, column}; }
 
   /// Cell of a row: nullptr if the column is absent, or unusable (which is told once, at the head).
   const std::string* cell(const io::CsvRow& row, const std::string& column) const;
@@ -43,7 +43,7 @@ class CsvList {
     UnitScale scale;
   };
 
-  void check_head(std::span<const ListColumn> columns, Faults& faults);
+  void check_head(std::span<const ListColumn> columns, io::Faults& faults);
   const Known* find(const std::string& column) const;
 
   io::CsvTable table_;
@@ -53,19 +53,19 @@ class CsvList {
 /// Reads the cells of one row by column, as TableReader reads the keys of an inline entry.
 class CsvRowReader {
  public:
-  CsvRowReader(const CsvList& list, const io::CsvRow& row, Faults& faults)
+  CsvRowReader(const CsvList& list, const io::CsvRow& row, io::Faults& faults)
       : list_(&list), row_(&row), faults_(&faults) {}
 
   template <class Q>
-  std::optional<Q> quantity(const std::string& column, const Bounds& bounds,
-                            Need need = Need::optional) {
-    const auto value = si_value(column, unit_info<Q>(), bounds, need);
+  std::optional<Q> quantity(const std::string& column, const io::Bounds& bounds,
+                            io::Need need = io::Need::optional) {
+    const auto value = si_value(column, io::unit_info<Q>(), bounds, need);
     return value ? std::optional<Q>(Q::from_si(*value)) : std::nullopt;
   }
-  std::optional<std::string> text(const std::string& column, Need need = Need::optional);
-  std::optional<int> integer(const std::string& column, Need need = Need::optional);
+  std::optional<std::string> text(const std::string& column, io::Need need = io::Need::optional);
+  std::optional<int> integer(const std::string& column, io::Need need = io::Need::optional);
   template <class E, std::size_t N>
-  std::optional<E> choice(const std::string& column, const Word<E> (&words)[N]) {
+  std::optional<E> choice(const std::string& column, const io::Word<E> (&words)[N]) {
     std::vector<std::string> names;
     for (const auto& word : words) names.emplace_back(word.word);
     const auto chosen = choose(column, names);
@@ -74,18 +74,18 @@ class CsvRowReader {
   void finish() {}  ///< unknown columns are told at the head
 
   int line() const { return row_->line; }
-  Place place(const std::string& column) const { return list_->place(row_->line, column); }
+  io::Place place(const std::string& column) const { return list_->place(row_->line, column); }
 
  private:
   /// The cell, nullptr if there is nothing in it (a fault if required).
-  const std::string* find(const std::string& column, Need need);
-  std::optional<double> si_value(const std::string& column, const UnitInfo& unit,
-                                 const Bounds& bounds, Need need);
+  const std::string* find(const std::string& column, io::Need need);
+  std::optional<double> si_value(const std::string& column, const io::UnitInfo& unit,
+                                 const io::Bounds& bounds, io::Need need);
   std::optional<std::size_t> choose(const std::string& column, std::span<const std::string> words);
 
   const CsvList* list_;
   const io::CsvRow* row_;
-  Faults* faults_;
+  io::Faults* faults_;
 };
 
 }  // namespace manoscope::experiment

@@ -10,7 +10,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/experiment/draft_text.hpp"
-#include "manoscope/experiment/faults.hpp"
+#include "manoscope/io/faults.hpp"
 #include "manoscope/io/reader.hpp"
 
 namespace manoscope::experiment {

@@ -59,7 +59,8 @@ TEST(Draft, SortsMapsIntoListsByTheirNames) {
   const Draft draft = draft_experiment(folder.path());
   EXPECT_EQ(draft.written.size(), 3u);
   EXPECT_EQ(without_comments(text_of(folder.path() / "hydrostatic.csv")),
-            "map,pressure [Pa]\nS1_0Pa.gsf,0\nS1_0.5mbar_02.gsf,50\nS1_2.3kPa.gsf,2300\n");
+            "map,pressure [Pa],pressure_uncertainty [Pa]\n"
+            "S1_0Pa.gsf,0,\nS1_0.5mbar_02.gsf,50,\nS1_2.3kPa.gsf,2300,\n");
   EXPECT_EQ(without_comments(text_of(folder.path() / "flow.csv")),
             "map,flow_rate [mL/min],run\nQ5mlmin_01.gsf,5,Q5\nQ70mlmin_01.gsf,70,Q70\n"
             "Q70mlmin_02.gsf,70,Q70\n");
@@ -97,7 +98,28 @@ TEST(Draft, LeavesToTheUserWhatCheckThenAsksFor) {
       keys += fault.where().substr(fault.where().rfind(' ') + 1) + ' ';
       EXPECT_NE(fault.found().find("placeholder"), std::string::npos) << fault.what();
     }
-    EXPECT_EQ(keys, "channel.length channel.width channel.height pressure flow_rate ");
+    EXPECT_EQ(keys,
+              "channel.length channel.width channel.height instrument.pressure_noise pressure "
+              "flow_rate ");
+  }
+}
+
+TEST(Draft, AsksForEachValueWithAnExampleThatFitsTheField) {
+  const TestFolder folder;
+  write_maps(folder, {"x_1kPa.gsf", "x_2kPa.gsf", "x_3kPa.gsf"});
+  draft_experiment(folder.path());
+  try {
+    read_experiment(folder.path());
+    FAIL();
+  } catch (const InputErrors& errors) {
+    ASSERT_EQ(errors.faults().size(), 4u);
+    const char* const kExamples[] = {"like \"15.5 mm\"", "like \"1.7 mm\"", "like \"175 um\"",
+                                     "like \"10 Pa\": the standard deviation of one reading"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NE(errors.faults()[i].mend().find(kExamples[i]), std::string::npos)
+          << errors.faults()[i].mend();
+    }
+    EXPECT_NE(errors.faults()[3].mend().find("\"0 Pa\" claims an exact gauge"), std::string::npos);
   }
 }
 
@@ -107,12 +129,15 @@ TEST(Draft, IsAnExperimentOnceItsGapsAreFilled) {
   draft_experiment(folder.path());
   std::string toml = text_of(folder.path() / "experiment.toml");
   toml = replaced(replaced(toml, "? mm", "15 mm"), "? mm", "1.7 mm");
+  toml = replaced(toml, "? Pa", "8 Pa");
   folder.write("experiment.toml", replaced(toml, "? um", "175 um"));
   const Experiment experiment = read_experiment(folder.path());
   ASSERT_EQ(experiment.hydrostatic.size(), 3u);
   EXPECT_EQ(experiment.hydrostatic[0].name, "S1, \"old\" 0Pa.gsf");
   EXPECT_EQ(experiment.hydrostatic[1].name, "#1kPa.gsf");
   EXPECT_EQ(experiment.hydrostatic[2].pressure.si(), 2000.0);
+  EXPECT_EQ(experiment.hydrostatic[0].pressure_uncertainty, 8.0 * Pa);
+  EXPECT_FALSE(experiment.hydrostatic[0].vented);  // only the user can know
   EXPECT_EQ(experiment.name, folder.path().filename());
 }
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "manoscope/core/error.hpp"
-#include "manoscope/experiment/toml_document.hpp"
 #include "manoscope/io/csv_table.hpp"
+#include "manoscope/io/toml_document.hpp"
 
 namespace manoscope::experiment {
 namespace {
@@ -76,9 +76,14 @@ std::string draft_toml(const std::string& name, const std::optional<CameraGrid>&
       "\n[fluid]\n"
       "name = \"water\"             # CONFIRM\n"
       "viscosity = \"1.0 mPa s\"    # CONFIRM: water at 20 degC\n"
+      "# viscosity_uncertainty = \"0.01 mPa s\"\n"
       "density = \"998 kg/m3\"      # CONFIRM: water at 20 degC\n"
       "\n[instrument]\n"
-      "# pressure_noise = \"10 Pa\"  # standard deviation of one hydrostatic reading\n"
+      "pressure_noise = \"? Pa\"    # FILL IN: standard deviation of one reading of the gauge; \"0 "
+      "Pa\" claims an exact gauge\n"
+      "# pressure_zero_uncertainty = \"5 Pa\"   # of the gauge, common to all levels\n"
+      "# pressure_gain_uncertainty = 0.002\n"
+      "# flow_rate_uncertainty = 0.01         # relative, common to all runs\n"
       "# reference = \"flat.gsf\"    # the instrument's own map of a flat\n"
       "\n[hydrostatic]\n"
       "list = \"hydrostatic.csv\"\n";
@@ -95,13 +100,14 @@ std::string draft_toml(const std::string& name, const std::optional<CameraGrid>&
 
 std::string draft_hydrostatic(const std::vector<GuessedMap>& maps) {
   std::string comments =
-      "# Maps at known uniform pressure, outlet closed. Gauge pressures; give 0 in a column\n"
-      "# pressure_uncertainty [Pa] for a map vented to air.\n";
-  std::string rows = "map,pressure [Pa]\n";
+      "# Maps at known uniform pressure, outlet closed. Gauge pressures. pressure_uncertainty is "
+      "that\n"
+      "# of one reading: empty for instrument.pressure_noise, 0 for a map vented to air.\n";
+  std::string rows = "map,pressure [Pa],pressure_uncertainty [Pa]\n";
   for (const GuessedMap& map : maps) {
     const bool known = map.guess.pressure.has_value();
     const std::string value = known ? number(map.guess.pressure->si()) : "?";
-    rows += fmt::format("{},{}\n", csv_cell(map.name), value);
+    rows += fmt::format("{},{},\n", csv_cell(map.name), value);
     if (known) {
       comments += fmt::format("# CONFIRM {} Pa, from \"{}\" in {}\n", value,
                               map.guess.pressure_text, map.name);
@@ -144,8 +150,8 @@ bool can_be_listed(const std::string& name) {
 
 bool can_be_a_name(const std::string& name) {
   try {
-    const TomlValue root = parse_toml("name = " + toml_text(name) + "\n", "draft");
-    const TomlValue* found = root.find("name");
+    const io::TomlValue root = io::parse_toml("name = " + toml_text(name) + "\n", "draft");
+    const io::TomlValue* found = root.find("name");
     return found != nullptr && found->text == name;
   } catch (const InputError&) {
     return false;

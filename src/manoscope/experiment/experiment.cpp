@@ -9,8 +9,8 @@
 #include "manoscope/experiment/lists.hpp"
 #include "manoscope/experiment/map_files.hpp"
 #include "manoscope/experiment/sections.hpp"
-#include "manoscope/experiment/table_reader.hpp"
-#include "manoscope/experiment/toml_document.hpp"
+#include "manoscope/io/table_reader.hpp"
+#include "manoscope/io/toml_document.hpp"
 
 namespace manoscope::experiment {
 namespace {
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr int kSchema = 1;
 
 /// The experiment.toml that the user means.
-fs::path find_file(const fs::path& folder_or_file, Faults& faults) {
+fs::path find_file(const fs::path& folder_or_file, io::Faults& faults) {
   std::error_code error;
   if (!fs::is_directory(folder_or_file, error)) {
     if (!fs::exists(folder_or_file, error)) {
@@ -40,20 +40,20 @@ fs::path find_file(const fs::path& folder_or_file, Faults& faults) {
   return file;
 }
 
-TomlValue read_document(Experiment& experiment, Faults& faults) {
+io::TomlValue read_document(Experiment& experiment, io::Faults& faults) {
   const fs::path& file = experiment.file;
   auto text = read_file(file, {file, 0, ""}, faults);
   faults.throw_if_any(file);
   experiment.text = std::move(*text);
   try {
-    return parse_toml(experiment.text, file);
+    return io::parse_toml(experiment.text, file);
   } catch (const InputError& error) {
     throw InputErrors({error});
   }
 }
 
-void check_schema(TableReader& root, Faults& faults) {
-  const auto schema = root.integer("manoscope", Need::required);
+void check_schema(io::TableReader& root, io::Faults& faults) {
+  const auto schema = root.integer("manoscope", io::Need::required);
   if (!schema || *schema == kSchema) return;
   faults.add(root.place("manoscope"), fmt::format("schema {} of the experiment file", *schema),
              *schema > kSchema
@@ -68,29 +68,31 @@ std::string folder_name(const fs::path& file) {
   return error ? std::string("experiment") : whole.parent_path().filename().string();
 }
 
-void read_sections(TableReader& root, Experiment& experiment, Faults& faults) {
-  if (auto table = root.table("channel", Need::required)) {
+void read_sections(io::TableReader& root, Experiment& experiment, io::Faults& faults) {
+  if (auto table = root.table("channel", io::Need::required)) {
     experiment.channel = read_channel(*table, faults);
   }
   if (auto table = root.table("wall")) experiment.wall = read_wall(*table);
-  if (auto table = root.table("fluid", Need::required)) experiment.fluid = read_fluid(*table);
+  if (auto table = root.table("fluid", io::Need::required)) {
+    experiment.fluid = read_fluid(*table, faults);
+  }
   if (auto table = root.table("rigid")) experiment.rigid = read_rigid(*table);
 }
 
-void read_maps(TableReader& root, Experiment& experiment, Faults& faults) {
+void read_maps(io::TableReader& root, Experiment& experiment, io::Faults& faults) {
   MapFiles files(experiment.file.parent_path());
   InstrumentSection& instrument = experiment.instrument;
   auto instrument_table = root.table("instrument");
   if (instrument_table) instrument = read_instrument(*instrument_table);
   MapList<HydrostaticMap> hydrostatic;
   MapList<FlowMap> flow;
-  if (auto table = root.table("hydrostatic", Need::required)) {
+  if (auto table = root.table("hydrostatic", io::Need::required)) {
     hydrostatic = read_hydrostatic(*table, instrument, files, faults);
   }
   if (auto table = root.table("flow")) flow = read_flow(*table, files, faults);
   check_lists(hydrostatic, flow, faults);
   if (instrument.reference) {
-    const Place place = instrument_table->place("reference");
+    const io::Place place = instrument_table->place("reference");
     instrument.reference = files.find(instrument.reference->string(), place, faults);
     check_reference(*instrument.reference, place, hydrostatic, flow, faults);
   }
@@ -101,11 +103,11 @@ void read_maps(TableReader& root, Experiment& experiment, Faults& faults) {
 }  // namespace
 
 Experiment read_experiment(const fs::path& folder_or_file) {
-  Faults faults;
+  io::Faults faults;
   Experiment experiment;
   experiment.file = find_file(folder_or_file, faults);
-  const TomlValue document = read_document(experiment, faults);
-  TableReader root(document, "", experiment.file, faults);
+  const io::TomlValue document = read_document(experiment, faults);
+  io::TableReader root(document, "", experiment.file, faults);
   check_schema(root, faults);
   experiment.name = root.text("name").value_or("");
   if (experiment.name.empty()) experiment.name = folder_name(experiment.file);

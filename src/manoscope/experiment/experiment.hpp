@@ -35,14 +35,18 @@ struct WallSection {
 struct FluidSection {
   std::string name;
   Viscosity viscosity{};
+  std::optional<Viscosity> viscosity_uncertainty;  ///< standard
   Density density{};
 };
 
 struct InstrumentSection {
-  std::optional<Length> height_noise;                 ///< standard deviation of one pixel
+  std::optional<Length> height_noise;  ///< standard deviation of one pixel
+  /// Of the interferometer: a miscounted fringe is half of it.
+  std::optional<Length> wavelength;
   std::optional<Pressure> pressure_noise;             ///< of one hydrostatic reading
   std::optional<double> pressure_gain_uncertainty;    ///< relative, common to all levels
   std::optional<Pressure> pressure_zero_uncertainty;  ///< common to all levels
+  std::optional<double> flow_rate_uncertainty;        ///< relative, common to all runs
   /// What the map files do not say themselves: distance of columns and of rows, unit of the
   /// heights, name of the channel to read.
   std::optional<std::array<Length, 2>> pixel_pitch;
@@ -57,7 +61,12 @@ struct HydrostaticMap {
   std::filesystem::path map;  ///< absolute, or relative to the working directory
   std::string name;           ///< as written in the list
   Pressure pressure{};
-  Pressure pressure_uncertainty{};  ///< standard, of this one reading; 0 = vented, exactly 0 Pa
+  /// Standard, of this one reading: as the list says, else instrument.pressure_noise; nullopt if
+  /// neither is given, which is no claim of an exact reading.
+  std::optional<Pressure> pressure_uncertainty;
+  /// To air, so at exactly 0 Pa and not read on the gauge: the list itself says 0 Pa with an
+  /// uncertainty of 0.
+  bool vented = false;
   std::optional<int> sequence;
   SweepDirection direction = SweepDirection::unknown;
   int line = 0;  ///< in the file that lists it

@@ -41,7 +41,9 @@ TEST(ReadExperiment, UnderstandsEveryKeyOfTheManual) {
   expect_si(e.wall->prestress->si(), 100e6);
   EXPECT_EQ(e.fluid.name, "water");
   expect_si(e.fluid.viscosity.si(), 1e-3);
+  expect_si(e.fluid.viscosity_uncertainty->si(), 5e-6);
   expect_si(e.fluid.density.si(), 998.0);
+  EXPECT_EQ(e.instrument.flow_rate_uncertainty, 0.01);
   expect_si(e.instrument.height_noise->si(), 20e-9);
   expect_si(e.instrument.pressure_noise->si(), 10.0);
   EXPECT_EQ(e.instrument.pressure_gain_uncertainty, 0.002);
@@ -59,11 +61,13 @@ TEST(ReadExperiment, UnderstandsEveryColumnOfTheManual) {
   const HydrostaticMap& first = e.hydrostatic[0];
   EXPECT_EQ(first.map, folder.path() / "h00.gsf");
   EXPECT_EQ(first.name, "h00.gsf");
-  EXPECT_EQ(first.pressure_uncertainty.si(), 0.0);
+  EXPECT_EQ(first.pressure_uncertainty, Pressure{});
+  EXPECT_TRUE(first.vented);
   EXPECT_EQ(first.sequence, 0);
   EXPECT_EQ(first.direction, SweepDirection::up);
   EXPECT_EQ(first.line, 2);
-  expect_si(e.hydrostatic[1].pressure_uncertainty.si(), 10.0);  // instrument.pressure_noise
+  expect_si(e.hydrostatic[1].pressure_uncertainty->si(), 10.0);  // instrument.pressure_noise
+  EXPECT_FALSE(e.hydrostatic[1].vented);
   EXPECT_EQ(e.hydrostatic[2].direction, SweepDirection::unknown);
   EXPECT_EQ(e.hydrostatic[3].direction, SweepDirection::down);
   ASSERT_EQ(e.flow.size(), 3u);
@@ -91,11 +95,40 @@ TEST(ReadExperiment, NeedsOnlyWhatTheMeasurementNeeds) {
   expect_si(e.channel.height.si(), 175e-6);
   expect_si(e.fluid.density.si(), 998.0);
   expect_si(e.hydrostatic[2].pressure.si(), 2500.0);
-  // No uncertainty of the row, none of the instrument.
-  EXPECT_EQ(e.hydrostatic[2].pressure_uncertainty.si(), 0.0);
+  // No uncertainty of the row, none of the instrument: unknown, which is not the same as 0.
+  EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty, std::nullopt);
+  EXPECT_EQ(e.hydrostatic[2].pressure_uncertainty, std::nullopt);
+  EXPECT_FALSE(e.hydrostatic[0].vented);
+  EXPECT_EQ(e.fluid.viscosity_uncertainty, std::nullopt);
+  EXPECT_EQ(e.instrument.flow_rate_uncertainty, std::nullopt);
   EXPECT_EQ(e.channel.origin, std::nullopt);
   EXPECT_FALSE(e.wall);
   EXPECT_TRUE(e.flow.empty());
+}
+
+TEST(ReadExperiment, TakesAMapForVentedOnlyWhereTheListSaysZeroTwice) {
+  const TestFolder folder;
+  write_full_example(folder);
+  struct Given {
+    const char *row, *noise;
+    std::optional<double> uncertainty;  // Pa
+    bool vented;
+  };
+  for (const Given& given :
+       {Given{"0,0", "pressure_noise = \"10 Pa\"", 0.0, true}, Given{"0,0", "", 0.0, true},
+        Given{"0,", "pressure_noise = \"10 Pa\"", 10.0, false},
+        Given{"0,", "pressure_noise = \"0 Pa\"", 0.0, false}, Given{"0,", "", std::nullopt, false},
+        Given{"0,3", "pressure_noise = \"10 Pa\"", 3.0, false},
+        Given{"50,0", "pressure_noise = \"10 Pa\"", 0.0, false}}) {
+    folder.write("experiment.toml", replaced(kFullToml, "pressure_noise = \"10 Pa\"", given.noise));
+    folder.write("hydrostatic.csv", std::string("map,pressure [Pa],pressure_uncertainty [Pa]\n") +
+                                        "h00.gsf," + given.row +
+                                        "\nh01.gsf,100,10\nh02.gsf,2500,10\n");
+    const HydrostaticMap map = read_experiment(folder.path()).hydrostatic[0];
+    EXPECT_EQ(map.vented, given.vented) << given.row << " with " << given.noise;
+    ASSERT_EQ(map.pressure_uncertainty.has_value(), given.uncertainty.has_value()) << given.row;
+    if (given.uncertainty) expect_si(map.pressure_uncertainty->si(), *given.uncertainty);
+  }
 }
 
 TEST(ReadExperiment, TakesListsInlineAsWell) {
@@ -113,10 +146,11 @@ TEST(ReadExperiment, TakesListsInlineAsWell) {
   folder.write("experiment.toml", toml);
   const Experiment e = read_experiment(folder.path());
   ASSERT_EQ(e.hydrostatic.size(), 3u);
-  EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty.si(), 0.0);
+  EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty, Pressure{});
+  EXPECT_TRUE(e.hydrostatic[0].vented);
   expect_si(e.hydrostatic[1].pressure.si(), 100.0);
-  expect_si(e.hydrostatic[1].pressure_uncertainty.si(), 10.0);
-  EXPECT_EQ(e.hydrostatic[2].line, 37);
+  expect_si(e.hydrostatic[1].pressure_uncertainty->si(), 10.0);
+  EXPECT_EQ(e.hydrostatic[2].line, 39);
   ASSERT_EQ(e.flow.size(), 1u);
   expect_si(e.flow[0].pressure_drop->si(), 1420.0);
   expect_si(e.flow[0].time->si(), 120.0);
@@ -166,8 +200,8 @@ TEST(ReadExperiment, ReadsThePracticeExperiments) {
     EXPECT_EQ(e.name, name);
     EXPECT_EQ(e.hydrostatic.size(), 25u);
     EXPECT_EQ(e.flow.size(), 8u);
-    EXPECT_EQ(e.hydrostatic[0].pressure_uncertainty.si(), 0.0);
-    expect_si(e.hydrostatic[24].pressure_uncertainty.si(), 10.0);
+    EXPECT_TRUE(e.hydrostatic[0].vented);
+    expect_si(e.hydrostatic[24].pressure_uncertainty->si(), 10.0);
     expect_si(e.flow[0].flow_rate.si(), first_flow_rate * 1e-6 / 60);
     EXPECT_GT(e.flow[7].pressure_drop->si(), e.flow[0].pressure_drop->si());
   }

@@ -20,7 +20,7 @@ bool same_value(const HydrostaticMap& a, const HydrostaticMap& b) {
 bool same_value(const FlowMap& a, const FlowMap& b) { return a.flow_rate == b.flow_rate; }
 
 template <class T>
-Seen check_repeats(const MapList<T>& list, const char* value_name, Faults& faults) {
+Seen check_repeats(const MapList<T>& list, const char* value_name, io::Faults& faults) {
   Seen seen;
   for (std::size_t i = 0; i < list.maps.size(); ++i) {
     const T& map = list.maps[i];
@@ -30,7 +30,7 @@ Seen check_repeats(const MapList<T>& list, const char* value_name, Faults& fault
     const T& other = list.maps[first->second];
     faults.add(
         list.place(i, "map"),
-        fmt::format("{} is listed twice, first in line {}", in_quotes(map.name), other.line),
+        fmt::format("{} is listed twice, first in line {}", io::in_quotes(map.name), other.line),
         same_value(map, other)
             ? "Keep one of the two: a repeat is another map of the same level"
             : fmt::format("One map has one {}: correct the name, or remove a row", value_name));
@@ -38,7 +38,7 @@ Seen check_repeats(const MapList<T>& list, const char* value_name, Faults& fault
   return seen;
 }
 
-void check_levels(const MapList<HydrostaticMap>& hydrostatic, Faults& faults) {
+void check_levels(const MapList<HydrostaticMap>& hydrostatic, io::Faults& faults) {
   if (!hydrostatic.complete) return;  // the missing levels may stand in the rows at fault
   std::set<double> levels;
   for (const HydrostaticMap& map : hydrostatic.maps) levels.insert(map.pressure.si());
@@ -50,7 +50,7 @@ void check_levels(const MapList<HydrostaticMap>& hydrostatic, Faults& faults) {
                   kFewestLevels));
 }
 
-void check_runs(const MapList<FlowMap>& flow, Faults& faults) {
+void check_runs(const MapList<FlowMap>& flow, io::Faults& faults) {
   constexpr double kRelative = 1e-9;  // the same rate in two units differs by round-off
   std::map<std::string, std::size_t> first_of_run;
   for (std::size_t i = 0; i < flow.maps.size(); ++i) {
@@ -59,18 +59,18 @@ void check_runs(const MapList<FlowMap>& flow, Faults& faults) {
     const FlowMap& other = flow.maps[first_of_run.try_emplace(map.run, i).first->second];
     const double rate = map.flow_rate.si(), first_rate = other.flow_rate.si();
     if (std::abs(rate - first_rate) <= kRelative * std::abs(first_rate)) continue;
-    faults.add(
-        flow.place(i, "run"),
-        fmt::format("run {} has {:g} mL/min here and {:g} mL/min in line {}", in_quotes(map.run),
-                    map.flow_rate.in(mL_per_min), other.flow_rate.in(mL_per_min), other.line),
-        "One run has one flow rate: correct it, or name another run");
+    faults.add(flow.place(i, "run"),
+               fmt::format("run {} has {:g} mL/min here and {:g} mL/min in line {}",
+                           io::in_quotes(map.run), map.flow_rate.in(mL_per_min),
+                           other.flow_rate.in(mL_per_min), other.line),
+               "One run has one flow rate: correct it, or name another run");
   }
 }
 
 }  // namespace
 
 void check_lists(const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowMap>& flow,
-                 Faults& faults) {
+                 io::Faults& faults) {
   const Seen at_rest = check_repeats(hydrostatic, "pressure", faults);
   check_repeats(flow, "flow rate", faults);
   for (std::size_t i = 0; i < flow.maps.size(); ++i) {
@@ -78,9 +78,9 @@ void check_lists(const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowM
     if (map.name.empty()) continue;
     const auto found = at_rest.find(MapFiles::identity(map.map));
     if (found == at_rest.end()) continue;
-    const Place other = hydrostatic.rows[found->second];
+    const io::Place other = hydrostatic.rows[found->second];
     faults.add(flow.place(i, "map"),
-               fmt::format("{} is also in the hydrostatic list, {}:{}", in_quotes(map.name),
+               fmt::format("{} is also in the hydrostatic list, {}:{}", io::in_quotes(map.name),
                            other.file.filename().string(), other.line),
                "A map is taken at rest or under flow: remove it from one list");
   }
@@ -88,9 +88,9 @@ void check_lists(const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowM
   check_runs(flow, faults);
 }
 
-void check_reference(const std::filesystem::path& reference, const Place& place,
+void check_reference(const std::filesystem::path& reference, const io::Place& place,
                      const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowMap>& flow,
-                     Faults& faults) {
+                     io::Faults& faults) {
   const std::string identity = MapFiles::identity(reference);
   const auto refuse_listed = [&](const auto& list) {
     for (std::size_t i = 0; i < list.maps.size(); ++i) {

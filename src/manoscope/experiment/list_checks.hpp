@@ -10,11 +10,11 @@ namespace manoscope::experiment {
 /// list; fewer than three distinct pressures (a constitutive curve needs them); a run with two flow
 /// rates.
 void check_lists(const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowMap>& flow,
-                 Faults& faults);
+                 io::Faults& faults);
 
 /// The instrument's own flat reference shows no wall: it is none of the listed maps.
-void check_reference(const std::filesystem::path& reference, const Place& place,
+void check_reference(const std::filesystem::path& reference, const io::Place& place,
                      const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowMap>& flow,
-                     Faults& faults);
+                     io::Faults& faults);
 
 }  // namespace manoscope::experiment

@@ -5,37 +5,41 @@
 #include <span>
 
 #include "manoscope/experiment/csv_list.hpp"
+#include "manoscope/io/map_address.hpp"
 
 namespace manoscope::experiment {
 namespace {
 
-constexpr UnitInfo kNoUnit{};
+constexpr io::UnitInfo kNoUnit{};
 constexpr ListColumn kHydrostaticColumns[] = {
-    {"map", kNoUnit, Need::required},
-    {"pressure", unit_info<Pressure>(), Need::required},
-    {"pressure_uncertainty", unit_info<Pressure>(), Need::optional},
-    {"sequence", kNoUnit, Need::optional},
-    {"direction", kNoUnit, Need::optional},
-    {"repeat", kNoUnit, Need::optional}};
-constexpr ListColumn kFlowColumns[] = {{"map", kNoUnit, Need::required},
-                                       {"flow_rate", unit_info<FlowRate>(), Need::required},
-                                       {"pressure_drop", unit_info<Pressure>(), Need::optional},
-                                       {"outlet_pressure", unit_info<Pressure>(), Need::optional},
-                                       {"time", unit_info<Time>(), Need::optional},
-                                       {"run", kNoUnit, Need::optional}};
-constexpr Word<SweepDirection> kSweepDirections[] = {{"up", SweepDirection::up},
-                                                     {"down", SweepDirection::down}};
+    {"map", kNoUnit, io::Need::required},
+    {"pressure", io::unit_info<Pressure>(), io::Need::required},
+    {"pressure_uncertainty", io::unit_info<Pressure>(), io::Need::optional},
+    {"sequence", kNoUnit, io::Need::optional},
+    {"direction", kNoUnit, io::Need::optional},
+    {"repeat", kNoUnit, io::Need::optional}};
+constexpr ListColumn kFlowColumns[] = {
+    {"map", kNoUnit, io::Need::required},
+    {"flow_rate", io::unit_info<FlowRate>(), io::Need::required},
+    {"pressure_drop", io::unit_info<Pressure>(), io::Need::optional},
+    {"outlet_pressure", io::unit_info<Pressure>(), io::Need::optional},
+    {"time", io::unit_info<Time>(), io::Need::optional},
+    {"run", kNoUnit, io::Need::optional}};
+constexpr io::Word<SweepDirection> kSweepDirections[] = {{"up", SweepDirection::up},
+                                                         {"down", SweepDirection::down}};
 
 /// `Row` is a TableReader (inline) or a CsvRowReader: both know keys, units and bounds.
 template <class Row>
-HydrostaticMap hydrostatic_row(Row& row, Pressure default_uncertainty) {
+HydrostaticMap hydrostatic_row(Row& row, const std::optional<Pressure>& default_uncertainty) {
   HydrostaticMap map;
-  map.name = row.text("map", Need::required).value_or("");
-  map.pressure = row.template quantity<Pressure>("pressure", bounds::kGaugePressure, Need::required)
-                     .value_or(Pressure{});
+  map.name = row.text("map", io::Need::required).value_or("");
+  map.pressure =
+      row.template quantity<Pressure>("pressure", io::bounds::kGaugePressure, io::Need::required)
+          .value_or(Pressure{});
   map.pressure_uncertainty =
-      row.template quantity<Pressure>("pressure_uncertainty", bounds::kPressureUncertainty)
-          .value_or(default_uncertainty);
+      row.template quantity<Pressure>("pressure_uncertainty", io::bounds::kPressureUncertainty);
+  map.vented = map.pressure == Pressure{} && map.pressure_uncertainty == Pressure{};
+  if (!map.pressure_uncertainty) map.pressure_uncertainty = default_uncertainty;
   map.sequence = row.integer("sequence");
   map.direction = row.choice("direction", kSweepDirections).value_or(SweepDirection::unknown);
   row.integer("repeat");  // a number for the user's own bookkeeping: equal levels are repeats
@@ -45,20 +49,25 @@ HydrostaticMap hydrostatic_row(Row& row, Pressure default_uncertainty) {
 template <class Row>
 FlowMap flow_row(Row& row) {
   FlowMap map;
-  map.name = row.text("map", Need::required).value_or("");
-  map.flow_rate = row.template quantity<FlowRate>("flow_rate", bounds::kFlowRate, Need::required)
-                      .value_or(FlowRate{});
-  map.pressure_drop = row.template quantity<Pressure>("pressure_drop", bounds::kPressureDrop);
-  map.outlet_pressure = row.template quantity<Pressure>("outlet_pressure", bounds::kGaugePressure);
-  map.time = row.template quantity<Time>("time", bounds::kTime);
+  map.name = row.text("map", io::Need::required).value_or("");
+  map.flow_rate =
+      row.template quantity<FlowRate>("flow_rate", io::bounds::kFlowRate, io::Need::required)
+          .value_or(FlowRate{});
+  map.pressure_drop = row.template quantity<Pressure>("pressure_drop", io::bounds::kPressureDrop);
+  map.outlet_pressure =
+      row.template quantity<Pressure>("outlet_pressure", io::bounds::kGaugePressure);
+  map.time = row.template quantity<Time>("time", io::bounds::kTime);
   map.run = row.text("run").value_or("");
-  if (map.run.empty()) map.run = std::filesystem::path(map.name).stem().string();
+  if (map.run.empty()) {
+    const auto [file, page] = io::map_address(map.name);
+    map.run = file.stem().string() + (page == 0 ? std::string() : fmt::format("#{}", page));
+  }
   return map;
 }
 
 template <class T, class ReadRow>
 void read_csv(const std::filesystem::path& path, std::span<const ListColumn> columns,
-              MapList<T>& list, Faults& faults, const ReadRow& read_row) {
+              MapList<T>& list, io::Faults& faults, const ReadRow& read_row) {
   list.whole = {path, 1, ""};
   const auto csv = CsvList::read(path, columns, faults);
   if (!csv) return;
@@ -74,19 +83,19 @@ void read_csv(const std::filesystem::path& path, std::span<const ListColumn> col
 }
 
 template <class T, class ReadRow>
-void read_inline(const TableReader& section, const TomlValue& maps, const std::string& path,
-                 MapList<T>& list, Faults& faults, const ReadRow& read_row) {
+void read_inline(const io::TableReader& section, const io::TomlValue& maps, const std::string& path,
+                 MapList<T>& list, io::Faults& faults, const ReadRow& read_row) {
   for (std::size_t i = 0; i < maps.items.size(); ++i) {
     const std::string prefix = fmt::format("{} entry {}: ", path, i + 1);
-    const TomlValue& entry = maps.items[i];
-    const Place place{section.file(), entry.line, prefix};
-    if (entry.kind != TomlValue::Kind::table) {
+    const io::TomlValue& entry = maps.items[i];
+    const io::Place place{section.file(), entry.line, prefix};
+    if (entry.kind != io::TomlValue::Kind::table) {
       faults.add({place.file, place.line, fmt::format("{} entry {}", path, i + 1)},
-                 fmt::format("{} stands where a map belongs", in_quotes(entry.text)),
+                 fmt::format("{} stands where a map belongs", io::in_quotes(entry.text)),
                  "Write {map = \"a.gsf\", ...} for every map");
       continue;
     }
-    TableReader reader(entry, prefix, section.file(), faults);
+    io::TableReader reader(entry, prefix, section.file(), faults);
     list.maps.push_back(read_row(reader));
     reader.finish();
     list.maps.back().line = entry.line;
@@ -98,15 +107,15 @@ void read_inline(const TableReader& section, const TomlValue& maps, const std::s
 }
 
 template <class T, class ReadRow>
-MapList<T> read_list(TableReader& section, const std::string& name, const char* example,
-                     std::span<const ListColumn> columns, MapFiles& files, Faults& faults,
+MapList<T> read_list(io::TableReader& section, const std::string& name, const char* example,
+                     std::span<const ListColumn> columns, MapFiles& files, io::Faults& faults,
                      const ReadRow& read_row) {
   MapList<T> list;
   const std::size_t n_faults = faults.size();
   const bool both = section.has("list") && section.has("maps");
   const bool neither = !section.has("list") && !section.has("maps");
   const auto file = section.text("list");
-  const TomlValue* maps = section.list("maps");
+  const io::TomlValue* maps = section.list("maps");
   section.finish();
   list.whole = section.place(section.has("maps") ? "maps" : "list");
   if (both) {
@@ -131,15 +140,15 @@ MapList<T> read_list(TableReader& section, const std::string& name, const char* 
 
 }  // namespace
 
-MapList<HydrostaticMap> read_hydrostatic(TableReader& section, const InstrumentSection& instrument,
-                                         MapFiles& files, Faults& faults) {
-  const Pressure default_uncertainty = instrument.pressure_noise.value_or(Pressure{});
+MapList<HydrostaticMap> read_hydrostatic(io::TableReader& section,
+                                         const InstrumentSection& instrument, MapFiles& files,
+                                         io::Faults& faults) {
   return read_list<HydrostaticMap>(
       section, "hydrostatic", "{map = \"h00.gsf\", pressure = \"0 Pa\"}", kHydrostaticColumns,
-      files, faults, [&](auto& row) { return hydrostatic_row(row, default_uncertainty); });
+      files, faults, [&](auto& row) { return hydrostatic_row(row, instrument.pressure_noise); });
 }
 
-MapList<FlowMap> read_flow(TableReader& section, MapFiles& files, Faults& faults) {
+MapList<FlowMap> read_flow(io::TableReader& section, MapFiles& files, io::Faults& faults) {
   return read_list<FlowMap>(section, "flow", "{map = \"f00.gsf\", flow_rate = \"5 mL/min\"}",
                             kFlowColumns, files, faults, [](auto& row) { return flow_row(row); });
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "manoscope/core/suggest.hpp"
+#include "manoscope/io/map_address.hpp"
 
 namespace manoscope::experiment {
 namespace {
@@ -34,18 +35,19 @@ std::string obstacle(const fs::path& path) {
 
 }  // namespace
 
-fs::path MapFiles::find(const std::string& name, const Place& place, Faults& faults) {
+fs::path MapFiles::find(const std::string& name, const io::Place& place, io::Faults& faults) {
   if (name.find('\0') != std::string::npos) {
     faults.add(place, "a file name with a zero byte", "Write the name of a map");
     return folder_;
   }
-  fs::path path = folder_ / fs::path(name);
+  fs::path named = folder_ / fs::path(name);
   if (const fs::path beside = place.file.parent_path() / fs::path(name);
-      !is_there(path) && is_there(beside)) {
-    path = beside;
+      !is_there(io::map_address(named).file) && is_there(io::map_address(beside).file)) {
+    named = beside;
   }
+  const fs::path path = io::map_address(named).file;  // of FILE#n, the file
   const std::string trouble = obstacle(path);
-  if (trouble.empty()) return path;
+  if (trouble.empty()) return named;
   std::string mend = "Check the file and its read permission";
   if (!is_there(path)) {
     mend = name.find('\\') != std::string::npos
@@ -56,8 +58,8 @@ fs::path MapFiles::find(const std::string& name, const Place& place, Faults& fau
   } else if (trouble.find("folder") != std::string::npos) {
     mend = "Name the file inside, with its extension";
   }
-  faults.add(place, fmt::format("{}: {}", in_quotes(name), trouble), mend);
-  return path;
+  faults.add(place, fmt::format("{}: {}", io::in_quotes(name), trouble), mend);
+  return named;
 }
 
 std::string MapFiles::suggest(const fs::path& path) {
@@ -79,12 +81,15 @@ std::string MapFiles::suggest(const fs::path& path) {
 }
 
 std::string MapFiles::identity(const fs::path& path) {
+  const auto [file, page] = io::map_address(path);
   std::error_code error;
-  const fs::path canonical = fs::canonical(path, error);
-  return (error ? path.lexically_normal() : canonical).string();
+  const fs::path canonical = fs::canonical(file, error);
+  const std::string name = (error ? file.lexically_normal() : canonical).string();
+  return page == 0 ? name : fmt::format("{}#{}", name, page);
 }
 
-std::optional<std::string> read_file(const fs::path& path, const Place& place, Faults& faults) {
+std::optional<std::string> read_file(const fs::path& path, const io::Place& place,
+                                     io::Faults& faults) {
   constexpr std::uintmax_t kLargest = 16u << 20;
   std::string trouble = obstacle(path);
   std::error_code error;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "manoscope/experiment/faults.hpp"
+#include "manoscope/io/faults.hpp"
 
 namespace manoscope::experiment {
 
@@ -17,11 +17,11 @@ class MapFiles {
   explicit MapFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// The path of a map, relative to the experiment's folder; where nothing is there, relative to
-  /// the list that names it.
+  /// the list that names it. `FILE#n` names the n-th page of a file and stays in the path.
   /// @return A path in any case; with a fault at `place` added if it is no readable file.
-  std::filesystem::path find(const std::string& name, const Place& place, Faults& faults);
+  std::filesystem::path find(const std::string& name, const io::Place& place, io::Faults& faults);
 
-  /// One spelling per file on disk, to tell a file that is named twice.
+  /// One spelling per file on disk, and per page of it, to tell one that is named twice.
   static std::string identity(const std::filesystem::path& path);
 
  private:
@@ -34,7 +34,7 @@ class MapFiles {
 
 /// The whole of a file.
 /// @return nullopt, with a fault added, if it is not there, a folder, too large or unreadable.
-std::optional<std::string> read_file(const std::filesystem::path& path, const Place& place,
-                                     Faults& faults);
+std::optional<std::string> read_file(const std::filesystem::path& path, const io::Place& place,
+                                     io::Faults& faults);
 
 }  // namespace manoscope::experiment

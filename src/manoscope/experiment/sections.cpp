@@ -7,15 +7,16 @@
 namespace manoscope::experiment {
 namespace {
 
-constexpr Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirection::plus_columns},
-                                                   {"-columns", FlowDirection::minus_columns},
-                                                   {"+rows", FlowDirection::plus_rows},
-                                                   {"-rows", FlowDirection::minus_rows}};
-constexpr Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
-                                       {"-height", Outward::minus_height}};
+constexpr io::Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirection::plus_columns},
+                                                       {"-columns", FlowDirection::minus_columns},
+                                                       {"+rows", FlowDirection::plus_rows},
+                                                       {"-rows", FlowDirection::minus_rows}};
+constexpr io::Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
+                                           {"-height", Outward::minus_height}};
 
 /// The gap is the small side: another order is a slip of unit or of name.
-void check_proportions(const ChannelSection& channel, const TableReader& table, Faults& faults) {
+void check_proportions(const ChannelSection& channel, const io::TableReader& table,
+                       io::Faults& faults) {
   const Length none{};
   const auto told = [](Length value) { return fmt::format("{:g} mm", value.in(mm)); };
   if (channel.height > none && channel.width > none && channel.height > channel.width) {
@@ -40,73 +41,86 @@ void check_proportions(const ChannelSection& channel, const TableReader& table, 
   }
 }
 
-std::optional<Passage> read_passage(TableReader& rigid, const std::string& key) {
+std::optional<Passage> read_passage(io::TableReader& rigid, const std::string& key) {
   auto table = rigid.table(key);
   if (!table) return std::nullopt;
   Passage passage;
   passage.length =
-      table->quantity<Length>("length", bounds::kLength, Need::required).value_or(Length{});
+      table->quantity<Length>("length", io::bounds::kLength, io::Need::required).value_or(Length{});
   passage.width =
-      table->quantity<Length>("width", bounds::kWidth, Need::required).value_or(Length{});
+      table->quantity<Length>("width", io::bounds::kWidth, io::Need::required).value_or(Length{});
   passage.height =
-      table->quantity<Length>("height", bounds::kHeight, Need::required).value_or(Length{});
+      table->quantity<Length>("height", io::bounds::kHeight, io::Need::required).value_or(Length{});
   table->finish();
   return passage;
 }
 
 }  // namespace
 
-ChannelSection read_channel(TableReader& table, Faults& faults) {
+ChannelSection read_channel(io::TableReader& table, io::Faults& faults) {
   ChannelSection channel;
   channel.length =
-      table.quantity<Length>("length", bounds::kLength, Need::required).value_or(Length{});
+      table.quantity<Length>("length", io::bounds::kLength, io::Need::required).value_or(Length{});
   channel.width =
-      table.quantity<Length>("width", bounds::kWidth, Need::required).value_or(Length{});
+      table.quantity<Length>("width", io::bounds::kWidth, io::Need::required).value_or(Length{});
   channel.height =
-      table.quantity<Length>("height", bounds::kHeight, Need::required).value_or(Length{});
+      table.quantity<Length>("height", io::bounds::kHeight, io::Need::required).value_or(Length{});
   channel.height_uncertainty =
-      table.quantity<Length>("height_uncertainty", bounds::kLengthUncertainty);
-  channel.origin = table.pair<Length>("origin", bounds::kOrigin);
+      table.quantity<Length>("height_uncertainty", io::bounds::kLengthUncertainty);
+  channel.origin = table.pair<Length>("origin", io::bounds::kOrigin);
   channel.flow = table.choice("flow", kFlowDirections);
-  channel.rotation = table.quantity<Angle>("rotation", bounds::kRotation);
+  channel.rotation = table.quantity<Angle>("rotation", io::bounds::kRotation);
   channel.outward = table.choice("outward", kOutwards);
   table.finish();
   check_proportions(channel, table, faults);
   return channel;
 }
 
-WallSection read_wall(TableReader& table) {
+WallSection read_wall(io::TableReader& table) {
   WallSection wall;
   wall.material = table.text("material").value_or("");
-  wall.thickness = table.quantity<Length>("thickness", bounds::kThickness);
-  wall.youngs_modulus = table.quantity<Pressure>("youngs_modulus", bounds::kModulus);
-  wall.poisson_ratio = table.number("poisson_ratio", bounds::kPoissonRatio, "0.23");
-  wall.prestress = table.quantity<Pressure>("prestress", bounds::kPrestress);
+  wall.thickness = table.quantity<Length>("thickness", io::bounds::kThickness);
+  wall.youngs_modulus = table.quantity<Pressure>("youngs_modulus", io::bounds::kModulus);
+  wall.poisson_ratio = table.number("poisson_ratio", io::bounds::kPoissonRatio, "0.23");
+  wall.prestress = table.quantity<Pressure>("prestress", io::bounds::kPrestress);
   table.finish();
   return wall;
 }
 
-FluidSection read_fluid(TableReader& table) {
+FluidSection read_fluid(io::TableReader& table, io::Faults& faults) {
   FluidSection fluid;
   fluid.name = table.text("name").value_or("");
-  fluid.viscosity = table.quantity<Viscosity>("viscosity", bounds::kViscosity, Need::required)
-                        .value_or(Viscosity{});
-  fluid.density =
-      table.quantity<Density>("density", bounds::kDensity, Need::required).value_or(Density{});
+  fluid.viscosity =
+      table.quantity<Viscosity>("viscosity", io::bounds::kViscosity, io::Need::required)
+          .value_or(Viscosity{});
+  fluid.viscosity_uncertainty =
+      table.quantity<Viscosity>("viscosity_uncertainty", io::bounds::kViscosityUncertainty);
+  fluid.density = table.quantity<Density>("density", io::bounds::kDensity, io::Need::required)
+                      .value_or(Density{});
   table.finish();
+  if (fluid.viscosity_uncertainty && fluid.viscosity > Viscosity{} &&
+      *fluid.viscosity_uncertainty >= fluid.viscosity) {
+    faults.add(table.place("viscosity_uncertainty"),
+               fmt::format("the uncertainty, {:g} mPa s, is not below the viscosity, {:g} mPa s",
+                           fluid.viscosity_uncertainty->in(mPa_s), fluid.viscosity.in(mPa_s)),
+               "Give the standard uncertainty of the viscosity: check its unit");
+  }
   return fluid;
 }
 
-InstrumentSection read_instrument(TableReader& table) {
+InstrumentSection read_instrument(io::TableReader& table) {
   InstrumentSection instrument;
-  instrument.height_noise = table.quantity<Length>("height_noise", bounds::kHeightNoise);
+  instrument.height_noise = table.quantity<Length>("height_noise", io::bounds::kHeightNoise);
+  instrument.wavelength = table.quantity<Length>("wavelength", io::bounds::kWavelength);
   instrument.pressure_noise =
-      table.quantity<Pressure>("pressure_noise", bounds::kPressureUncertainty);
+      table.quantity<Pressure>("pressure_noise", io::bounds::kPressureNoise);
   instrument.pressure_gain_uncertainty =
-      table.number("pressure_gain_uncertainty", bounds::kGainUncertainty, "0.002");
+      table.number("pressure_gain_uncertainty", io::bounds::kGainUncertainty, "0.002");
   instrument.pressure_zero_uncertainty =
-      table.quantity<Pressure>("pressure_zero_uncertainty", bounds::kPressureUncertainty);
-  instrument.pixel_pitch = table.pair<Length>("pixel_pitch", bounds::kPixelPitch);
+      table.quantity<Pressure>("pressure_zero_uncertainty", io::bounds::kPressureUncertainty);
+  instrument.flow_rate_uncertainty =
+      table.number("flow_rate_uncertainty", io::bounds::kRelativeFlowUncertainty, "0.01");
+  instrument.pixel_pitch = table.pair<Length>("pixel_pitch", io::bounds::kPixelPitch);
   instrument.height_unit = table.text("height_unit").value_or("");
   instrument.channel = table.text("channel").value_or("");
   if (const auto reference = table.text("reference")) instrument.reference = *reference;
@@ -114,7 +128,7 @@ InstrumentSection read_instrument(TableReader& table) {
   return instrument;
 }
 
-RigidSection read_rigid(TableReader& table) {
+RigidSection read_rigid(io::TableReader& table) {
   RigidSection rigid;
   rigid.inlet = read_passage(table, "inlet");
   rigid.outlet = read_passage(table, "outlet");

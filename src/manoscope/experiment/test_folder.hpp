@@ -60,12 +60,14 @@ prestress = "100 MPa"
 name = "water"
 viscosity = "1.0 mPa s"
 density = "998 kg/m3"
+viscosity_uncertainty = "0.005 mPa s"
 
 [instrument]
 height_noise   = "20 nm"
 pressure_noise = "10 Pa"
 pressure_gain_uncertainty = 0.002
 pressure_zero_uncertainty = "5 Pa"
+flow_rate_uncertainty = 0.01
 reference = "flat.gsf"
 
 [hydrostatic]

@@ -30,4 +30,19 @@ Array1 one_dimensional_pressure(const Channel& channel, const Fluid& fluid, Flow
   return outlet_pressure.si() + rest + (running(last) - running);
 }
 
+Pressure acceleration_drop(const Channel& channel, const Fluid& fluid, FlowRate flow_rate,
+                           Length zeta_start, Length zeta_end, double momentum_factor) {
+  const auto speed = [&](Length zeta) {
+    const Length gap = channel.height + zeta;
+    if (!(gap > Length{})) {
+      throw InputError("acceleration drop", fmt::format("the gap is {:g} um", gap.in(um)),
+                       "Give deflections of a channel that is open");
+    }
+    return flow_rate.si() / (channel.width.si() * gap.si());
+  };
+  const double start = speed(zeta_start), end = speed(zeta_end);
+  return Pressure::from_si(0.5 * momentum_factor * fluid.density.si() *
+                           (end * end - start * start));
+}
+
 }  // namespace manoscope::flow

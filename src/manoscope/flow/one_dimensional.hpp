@@ -39,4 +39,16 @@ Array1 one_dimensional_pressure(const Channel& channel, const Fluid& fluid, Flow
                                 const Array1& x, const Array1& zeta, Pressure outlet_pressure,
                                 const OneDimensionalOptions& options = {});
 
+/// Pressure that the fluid's gain of speed takes between two sections, in addition to friction:
+///
+///   p_start - p_end = (beta rho Q^2/2) (1/A_end^2 - 1/A_start^2),  A = w (2 h0 + zeta)
+///
+/// Source: the momentum integral A dp = -d(beta rho Q^2/A) of unidirectional profiles, beta = 6/5
+/// of a parabola (1 of a flat profile). Negative where the flow widens. Not in Ozsun, Yakhot &
+/// Ekinci (2013), eq. (4), which is friction alone.
+///
+/// @throws InputError if a gap is not positive.
+Pressure acceleration_drop(const Channel& channel, const Fluid& fluid, FlowRate flow_rate,
+                           Length zeta_start, Length zeta_end, double momentum_factor = 1.2);
+
 }  // namespace manoscope::flow

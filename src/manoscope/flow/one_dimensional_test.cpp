@@ -108,5 +108,24 @@ TEST(OneDimensionalFlow, IsNearNavierStokesInABulgedChannelAtLowFlowRate) {
       << "from x = " << x[first] << " to " << x[last];
 }
 
+TEST(AccelerationDrop, IsTheIntegralOfTheMomentumEquation) {
+  const Channel channel{15.5 * mm, 1.7 * mm, 175.0 * um};
+  const Fluid water{1.0 * mPa_s, 998.0 * kg_per_m3};
+  const FlowRate flow_rate = 70.0 * mL_per_min;
+  const double q = flow_rate.si(), beta = 1.2, n = 2000;
+  // -dp/dx = (1/A) d/dx (beta rho Q^2/A) over a gap that falls from 175 + 33 um to 175 + 5 um.
+  const auto area = [&](double s) { return 1.7e-3 * (208e-6 - 28e-6 * s); };
+  double drop = 0.0;
+  for (double i = 0; i < n; ++i) {
+    const double from = area(i / n), to = area((i + 1) / n);
+    drop += beta * 998.0 * q * q * (1.0 / to - 1.0 / from) * 2.0 / (from + to);
+  }
+  // The midpoint rule: 1e-3 of the gap a step, squared.
+  EXPECT_NEAR(acceleration_drop(channel, water, flow_rate, 33.0 * um, 5.0 * um, beta).si() / drop,
+              1.0, 1e-7);
+  EXPECT_LT(acceleration_drop(channel, water, flow_rate, Length{}, 5.0 * um), Pressure{});
+  EXPECT_THROW(acceleration_drop(channel, water, flow_rate, -175.0 * um, Length{}), InputError);
+}
+
 }  // namespace
 }  // namespace manoscope::flow

@@ -1,10 +1,14 @@
 #include "manoscope/inversion/intersections.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+
+#include "manoscope/core/error.hpp"
 
 namespace manoscope::inversion {
 namespace {
@@ -76,9 +80,17 @@ std::optional<Line> fit_zero(const Difference& d, double centre, double window) 
 
 }  // namespace
 
+void IntersectionOptions::validate() const {
+  if (window && (!std::isfinite(window->si()) || *window <= Length{})) {
+    throw InputError("--crossing-window", fmt::format("is {:.4g} um", window->in(um)),
+                     "Give a length above 0, or auto");
+  }
+}
+
 std::vector<Intersection> find_intersections(const std::vector<calibration::Level>& levels,
                                              const Profile& state, Length channel_width,
                                              const IntersectionOptions& options) {
+  options.validate();
   const double window = options.window.value_or(0.1 * channel_width).si();
   std::vector<Intersection> found;
   for (const calibration::Level& level : levels) {

@@ -24,6 +24,8 @@ struct IntersectionOptions {
   void describe(Visitor&& visit) {
     visit("crossing-window", window, "length along x over which a crossing is fitted by a line");
   }
+  /// @throws InputError naming the first option out of range.
+  void validate() const;
 };
 
 /// The paper's own reading: p at the crossings of the flow profile with each static profile.
@@ -37,6 +39,7 @@ struct IntersectionOptions {
 ///
 /// @param levels  ascending, on the stations of `state`.
 /// @return by level, then by x.
+/// @throws InputError if an option is out of range.
 std::vector<Intersection> find_intersections(const std::vector<calibration::Level>& levels,
                                              const Profile& state, Length channel_width,
                                              const IntersectionOptions& options = {});

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
+#include "manoscope/core/error.hpp"
 #include "manoscope/core/random.hpp"
 #include "tests/support/local_wall.hpp"
+#include "tests/support/quiet_traps.hpp"
 
 namespace manoscope::inversion {
 namespace {
@@ -144,6 +147,25 @@ TEST(Intersections, DoNotCountStationsWithoutData) {
   EXPECT_NEAR(found[0].x.si(), 7.5e-3, 1e-6);
   state.flags.setConstant(StationFlag::no_data);
   EXPECT_TRUE(find_intersections(flat_levels({5e-6}), state, kWidth).empty());
+}
+
+TEST(Intersections, RefuseAWindowThatIsNone) {
+  IntersectionOptions options;
+  EXPECT_NO_THROW(options.validate());  // auto
+  const test::QuietTraps quiet;         // a NaN is handed in and told
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double window : {0.0, -1e-4, nan}) {
+    options.window = Length::from_si(window);
+    EXPECT_THROW(
+        find_intersections(flat_levels({5e-6}), exact_profile(kX, falling), kWidth, options),
+        InputError);
+    try {
+      options.validate();
+      ADD_FAILURE() << window;
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where(), "--crossing-window");
+    }
+  }
 }
 
 TEST(Intersections, NeedThreeStationsInTheWindow) {

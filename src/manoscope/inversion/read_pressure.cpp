@@ -101,7 +101,7 @@ PressureReading read_pressure(const ConstitutiveCurves& curves, const Profile& s
   Matrix label_weight = Matrix::Zero(n, n_levels);       // d p / d p_level
   Matrix interpolation = Matrix::Zero(n, n_levels);      // Pa, between a level and the next
   const Array1 state_sigma = state.uncertainty.standard();
-  const double range = (curves.levels.back().pressure - curves.levels.front().pressure).si();
+  const double range = curves.level_pressure.maxCoeff() - curves.level_pressure.minCoeff();
 
   for (Index ix = 0; ix < n; ++ix) {
     const auto& curve = curves.curves[static_cast<std::size_t>(ix)];
@@ -145,14 +145,19 @@ PressureReading read_pressure(const ConstitutiveCurves& curves, const Profile& s
     table.effect(mode.variable, mode.source) += inverse_slope * mode.effect;
   }
   add_level_modes(curves, deflection_weight, table);
-  for (Index k = 0; k < n_levels; ++k) {
-    const auto& level = curves.levels[static_cast<std::size_t>(k)];
-    if (level.uncertainty <= Pressure{}) continue;
-    const auto column = label_weight.col(k).array();
-    table.effect("label of " + level.name, "pressure labels") += column * level.uncertainty.si();
-    if (gauge.zero > Pressure{}) {
-      table.effect("gauge zero", "gauge zero") += column * gauge.zero.si();
+  if (gauge.zero > Pressure{}) {
+    Array1 share(n_levels);
+    for (Index k = 0; k < n_levels; ++k) {
+      share[k] = curves.levels[static_cast<std::size_t>(k)].gauge_share;
     }
+    table.effect("gauge zero", "gauge zero") +=
+        (label_weight * (curves.label_response * share.matrix())).array() * gauge.zero.si();
+  }
+  const Matrix label_effects = label_weight * curves.label_effect;
+  for (Index j = 0; j < label_effects.cols(); ++j) {
+    if ((label_effects.col(j).array() == 0.0).all()) continue;
+    table.effect(curves.label_error[static_cast<std::size_t>(j)], "pressure labels") +=
+        label_effects.col(j).array();
   }
   for (Index k = 0; k < n_levels; ++k) {
     const auto column = interpolation.col(k).array();

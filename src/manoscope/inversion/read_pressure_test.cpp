@@ -204,8 +204,7 @@ TEST(ReadPressure, IntervalHasTheAskedCoverageFactor) {
 TEST(ReadPressure, GaugeErrorsShiftAndScaleTheWholeReading) {
   const LocalWall wall;
   const Array1 x = wall.stations(20);
-  auto levels = calibrate(wall, x, even(24, 1e3, 50e3));
-  for (Level& each : levels) each.uncertainty = 1e-6 * Pa;  // so that the zero concerns them
+  const auto levels = calibrate(wall, x, even(24, 1e3, 50e3));  // no noise, and yet the gauge's
   const auto state = exact_profile(x, [&](double at) { return wall.zeta(at, 40e3 - 2e6 * at); });
   const auto reading = read_pressure(fit_curves(levels), state, {0.002, 5.0 * Pa});
   bool has_gain = false, has_zero = false;
@@ -221,6 +220,36 @@ TEST(ReadPressure, GaugeErrorsShiftAndScaleTheWholeReading) {
     }
   }
   EXPECT_TRUE(has_gain && has_zero);
+}
+
+TEST(ReadPressure, GaugeZeroMovesALevelAtZeroPressureUnlessItWasVented) {
+  // A straight curve through levels 2 kPa apart: a reading half way up the first interval leans by
+  // a half on the level at 0 Pa, and no reading beyond the first interval does.
+  const std::vector<double> pressures = even(6, 0.0, 10e3), zetas = even(6, 0.0, 10e-6);
+  const auto zero_effect = [&](double gauge_share, double label_sigma, double zeta) {
+    auto levels = one_station(pressures, zetas, 1e-9, label_sigma);
+    levels[0].gauge_share = gauge_share;
+    const auto reading = read_pressure(fit_curves(levels), state_of(zeta), {0.0, 5.0 * Pa});
+    double effect = 0.0;
+    for (const ErrorMode& mode : reading.uncertainty.modes) {
+      if (mode.variable == "gauge zero") effect += mode.effect[0];
+    }
+    return effect;
+  };
+  constexpr double kRoundOff = 1e-7;  // of 10 kPa that go through a cube root and back
+  // Labels of unknown noise (0) are no reason for the zero to vanish.
+  for (const double label_sigma : {0.0, 10.0}) {
+    EXPECT_NEAR(zero_effect(1.0, label_sigma, 1e-6), 5.0, kRoundOff);  // all labels alike
+    EXPECT_LT(zero_effect(0.0, label_sigma, 1e-6), 4.0);
+    EXPECT_GT(zero_effect(0.0, label_sigma, 1e-6), 1.0);
+    // Linear in the share.
+    EXPECT_NEAR(zero_effect(0.5, label_sigma, 1e-6),
+                0.5 * (5.0 + zero_effect(0.0, label_sigma, 1e-6)), kRoundOff);
+    EXPECT_NEAR(zero_effect(1.0, label_sigma, 7e-6), 5.0, kRoundOff);
+  }
+  // At the vented level itself nothing of the gauge is left.
+  EXPECT_NEAR(zero_effect(0.0, 10.0, 1e-12), 0.0, 1e-4);
+  EXPECT_NEAR(zero_effect(1.0, 10.0, 1e-12), 5.0, kRoundOff);
 }
 
 TEST(ReadPressure, AnErrorThatStateAndCalibrationShareCancels) {

@@ -122,21 +122,29 @@ TEST_P(VirtualExperiments, HavePullsOfWidthOneAndTheStatedCoverage) {
   constexpr int kExperiments = 1500;
   const auto pulls = run_experiments(kExperiments, GetParam().first, GetParam().second);
   // Four standard errors of each statistic, and what first order and the curves' interpolation may
-  // add: a tenth of a standard uncertainty to the mean, 5 % to the width, 1 % to the coverage.
-  const double mean = 4.0 / std::sqrt(kExperiments) + 0.1;
+  // add: 5 % to the width, 1 % to the coverage.
+  // Labels estimated together lean towards a smooth law, and so are biased for any one wall: their
+  // intervals hold on the average over walls (Wahba 1983), with up to half a standard uncertainty
+  // of bias here.
+  const double mean = 4.0 / std::sqrt(kExperiments) + 0.5;
   const double width = 4.0 / std::sqrt(2.0 * kExperiments) + 0.05;
   const double coverage = 4.0 * std::sqrt(0.95 * 0.05 / kExperiments) + 0.01;
-  const auto check = [&](const Statistics& found, const std::string& what) {
+  // How far a wall departs from the law of estimate_labels() is not known beforehand. Of a wall
+  // that follows it exactly, as this one, the bars of a small drop are therefore too wide: by up to
+  // a quarter.
+  const double cautious = 0.25;
+  const auto check = [&](const Statistics& found, const std::string& what, double wide) {
     EXPECT_GT(found.n, 0.99 * kExperiments) << what;
     EXPECT_NEAR(found.mean(), 0.0, mean) << what;
-    EXPECT_NEAR(found.width(), 1.0, width) << what;
-    EXPECT_NEAR(found.coverage(), 0.95, coverage) << what;
+    EXPECT_LT(found.width(), 1.0 + width) << what;
+    EXPECT_GT(found.width(), 1.0 - width - wide) << what;
+    EXPECT_GT(found.coverage(), 0.95 - coverage) << what;
   };
   for (std::size_t ix = 0; ix < pulls.station.size(); ++ix) {
-    check(pulls.station[ix], "station " + std::to_string(ix));
+    check(pulls.station[ix], "station " + std::to_string(ix), 0.05);
   }
-  check(pulls.drop, "drop over the channel");
-  check(pulls.half_drop, "drop over its first half");
+  check(pulls.drop, "drop over the channel", cautious);
+  check(pulls.half_drop, "drop over its first half", cautious);
 }
 
 INSTANTIATE_TEST_SUITE_P(Flows, VirtualExperiments,

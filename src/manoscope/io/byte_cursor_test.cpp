@@ -93,5 +93,43 @@ TEST(ByteCursor, ReadsTextFieldsOfFixedWidthAndAligns) {
   EXPECT_THROW(cursor.align(16), InputError);
 }
 
+TEST(ByteCursor, OverAFileReadsWhatItReadsOverItsBytes) {
+  const testing::TestFolder folder;
+  std::string bytes(200001, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(1 + i * 7 % 251);
+  bytes[180000] = '\0';  // ends a text that is longer than the window
+  const auto path = folder.write("a.bin", bytes);
+  ByteCursor file(path), memory(bytes, path.string());
+  EXPECT_EQ(file.size(), bytes.size());
+  EXPECT_TRUE(file.file_begins_with(bytes.substr(0, 20)));
+  EXPECT_FALSE(file.file_begins_with("Directory"));
+  // Numbers before, across and behind the ends of windows of 64 KiB, in both directions.
+  for (const std::uint64_t offset : {65533U, 0U, 131071U, 199993U, 65536U, 65530U}) {
+    file.seek(offset);
+    memory.seek(offset);
+    EXPECT_EQ(file.u64(Endian::big), memory.u64(Endian::big)) << offset;
+  }
+  file.seek(10);
+  memory.seek(10);
+  EXPECT_EQ(file.zero_terminated(), memory.zero_terminated());
+  EXPECT_EQ(file.offset(), memory.offset());
+  EXPECT_EQ(file.bytes(20000), memory.bytes(20000));
+  EXPECT_THROW(static_cast<void>(file.u8()), InputError);  // 200001 is the end
+  EXPECT_EQ(file.remaining(), 0U);
+}
+
+TEST(ByteCursor, OverAFileThatIsNoneOrShrinksGivesAnInputError) {
+  using testing::complaint;
+  using testing::contains;
+  const testing::TestFolder folder;
+  EXPECT_TRUE(contains(complaint([&] { ByteCursor(folder / "none"); }), "there is no such file"));
+  EXPECT_TRUE(contains(complaint([&] { ByteCursor(folder.path()); }), "not a regular file"));
+  const auto path = folder.write("a.bin", std::string(100000, 'x'));
+  ByteCursor cursor(path);
+  std::filesystem::resize_file(path, 10);
+  EXPECT_TRUE(contains(complaint([&] { static_cast<void>(cursor.u32(Endian::little)); }),
+                       "became shorter than its 100000 bytes"));
+}
+
 }  // namespace
 }  // namespace manoscope::io

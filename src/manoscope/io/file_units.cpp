@@ -29,6 +29,25 @@ std::string utf8(std::string_view text) {
   return out;
 }
 
+/// False for numbers that no unit has, and that would overflow where the unit is parsed: "1e308".
+bool has_plausible_numbers(std::string_view unit) {
+  int n_digits = 0, n_exponent_digits = 0;
+  bool in_exponent = false;
+  for (const char letter : unit) {
+    const bool is_digit = letter >= '0' && letter <= '9';
+    n_digits += is_digit ? 1 : 0;
+    if (letter == 'e' || letter == 'E') {
+      in_exponent = true;
+      n_exponent_digits = 0;
+    } else if (is_digit && in_exponent) {
+      if (++n_exponent_digits > 2) return false;
+    } else if (letter != '+' && letter != '-') {
+      in_exponent = false;
+    }
+  }
+  return n_digits <= 8;
+}
+
 }  // namespace
 
 std::string unit_from_file(std::string_view text) {
@@ -43,13 +62,18 @@ std::string unit_from_file(std::string_view text) {
 }
 
 std::optional<UnitScale> length_scale(std::string_view unit) {
+  if (!has_plausible_numbers(unit)) return std::nullopt;
   return unit_scale(unit_from_file(unit), "m");
 }
 
 SiUnit si_unit(std::string_view text, const std::string& where) {
   const std::string unit = unit_from_file(text);
   if (unit.empty()) return {};
-  if (unit == "1") return {"1", {}};
+  if (unit == "1" || unit == "m") return {unit, {}};
+  if (!has_plausible_numbers(unit)) {
+    throw InputError(where, fmt::format("names an unknown unit \"{}\"", excerpt(unit)),
+                     "Write a unit such as \"nm\" in its place");
+  }
   for (const char* name : {"m", "V", "A", "N", "Pa", "N/m", "s", "K", "Hz", "kg", "W", "J", "1"}) {
     if (const auto scale = unit_scale(unit, name)) return {name, *scale};
   }
@@ -87,9 +111,13 @@ void check_pixel_counts(double nx, double ny, const std::string& where) {
   }
 }
 
+std::string number_text(double value) {
+  return std::isnan(value) ? std::string("nan") : fmt::format("{:.4g}", value);
+}
+
 double checked_pitch(double pitch_m, std::string_view what, const std::string& where) {
   if (!std::isfinite(pitch_m) || pitch_m < 1e-12 || pitch_m > 1e3) {
-    throw InputError(where, fmt::format("{} gives a pixel of {:.4g} m", what, pitch_m),
+    throw InputError(where, fmt::format("{} gives a pixel of {} m", what, number_text(pitch_m)),
                      "A pixel is between 1e-12 m and 1e3 m wide; check the lateral scale");
   }
   return pitch_m;

@@ -41,6 +41,10 @@ inline constexpr double kMostPixels = 1e9;
 ///         kMostPixels.
 void check_pixel_counts(double nx, double ny, const std::string& where);
 
+/// An untrusted number for a message: to print a NaN raises the invalid-operation exception in
+/// libfmt.
+std::string number_text(double value);
+
 /// A pixel size in m from the size of n pixels.
 /// @throws InputError(where, ...) unless it is finite, positive and between 1e-12 m and 1e3 m.
 double checked_pitch(double pitch_m, std::string_view what, const std::string& where);

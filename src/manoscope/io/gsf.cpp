@@ -18,12 +18,11 @@
 #include "manoscope/io/file_text.hpp"
 #include "manoscope/io/file_units.hpp"
 #include "manoscope/io/formats.hpp"
+#include "manoscope/io/gsf.hpp"
 #include "manoscope/io/writer.hpp"
 
 namespace manoscope::io {
 namespace {
-
-constexpr std::string_view kMagic = "Gwyddion Simple Field 1.0\n";
 
 /// The lines `name = value` between the magic line and the first NUL.
 class Header {
@@ -86,76 +85,89 @@ class GsfReader final : public Reader {
   std::string_view name() const override { return "gsf"; }
   std::string_view description() const override { return "Gwyddion Simple Field"; }
   std::vector<std::string> extensions() const override { return {".gsf"}; }
-  int score(const Probe& probe) const override { return probe.head.starts_with(kMagic) ? 100 : 0; }
+  int score(const Probe& probe) const override {
+    return probe.head.starts_with(kGsfMagic) ? 100 : 0;
+  }
 
   std::vector<Channel> read(const std::filesystem::path& path, const ReadOptions&) const override {
     const std::string bytes = read_file(path);
-    ByteCursor cursor(bytes, path.string());
-    if (cursor.bytes(std::min(cursor.size(), kMagic.size())) != kMagic) {
-      throw InputError(path.string(), "does not begin with \"Gwyddion Simple Field 1.0\"",
-                       "Export the map to .gsf again");
-    }
-    const auto header_end = bytes.find('\0');
-    if (header_end == std::string::npos) {
-      throw InputError(path.string(), "no NUL byte ends its header",
-                       "The file is incomplete; copy or export it again");
-    }
-    const Header header(std::string_view(bytes).substr(kMagic.size(), header_end - kMagic.size()),
-                        path.string());
-    const double nx = header.pixels("XRes"), ny = header.pixels("YRes");
-    check_pixel_counts(nx, ny, path.string());
-
-    cursor.seek(header_end);
-    const std::uint64_t n_padding = 4 - header_end % 4;
-    for (const char byte : cursor.bytes(n_padding)) {
-      if (byte != '\0') {
-        cursor.fail(fmt::format("{} NUL bytes should end the header", n_padding),
-                    "Export the map to .gsf again");
-      }
-    }
-    const auto n_pixels = static_cast<std::uint64_t>(nx * ny);
-    if (cursor.remaining() != 4 * n_pixels) {
-      throw InputError(path.string(),
-                       fmt::format("{} bytes of heights follow its header, but XRes x YRes = {} x "
-                                   "{} needs {}",
-                                   cursor.remaining(), nx, ny, 4 * n_pixels),
-                       cursor.remaining() < 4 * n_pixels
-                           ? "The file is incomplete; copy or export it again"
-                           : "The file is damaged or holds more than one map; export it again");
-    }
-
+    GsfLayout layout = read_gsf_header(bytes, bytes.size(), path.string());
     Channel channel;
-    channel.name = header.text("Title");
-    channel.grid.nx = static_cast<Index>(nx);
-    channel.grid.ny = static_cast<Index>(ny);
-    channel.grid.pitch_x = pitch(header, "XReal", nx, path.string());
-    channel.grid.pitch_y = pitch(header, "YReal", ny, path.string());
-    static_cast<void>(header.number("XOffset"));  // must be numbers; a map counts from its corner
-    static_cast<void>(header.number("YOffset"));
-    channel.file_unit = header.text("ZUnits");
-    const SiUnit unit = si_unit(channel.file_unit, path.string());
-    channel.unit = unit.name;
+    channel.name = std::move(layout.title);
+    channel.grid = layout.grid;
+    channel.file_unit = std::move(layout.file_unit);
+    channel.unit = layout.unit.name;
     channel.values.resize(channel.grid.ny, channel.grid.nx);
-    cursor.f32_array(Endian::little, {channel.values.data(), n_pixels});
-    scale_values(channel.values, unit.scale, path.string());
+    ByteCursor cursor(bytes, path.string());
+    cursor.seek(layout.data);
+    cursor.f32_array(Endian::little,
+                     {channel.values.data(), static_cast<std::size_t>(channel.values.size())});
+    scale_values(channel.values, layout.unit.scale, path.string());
     std::vector<Channel> channels;
     channels.push_back(std::move(channel));
     return channels;
   }
-
- private:
-  /// 0 where the file names no size, or none that is a length.
-  static Length pitch(const Header& header, const std::string& field, double n,
-                      const std::string& where) {
-    const auto size = header.number(field);
-    const SiUnit unit = si_unit(header.text("XYUnits"), where);
-    if (!size || unit.name != "m") return {};
-    if (*size > 1e30) checked_pitch(*size, field, where);
-    return Length::from_si(checked_pitch(unit.scale.to_si(*size) / n, field, where));
-  }
 };
 
+/// 0 where the file names no size, or none that is a length.
+Length pitch(const Header& header, const std::string& field, double n, const std::string& where) {
+  const auto size = header.number(field);
+  const SiUnit unit = si_unit(header.text("XYUnits"), where);
+  if (!size || unit.name != "m") return {};
+  if (*size > 1e30) checked_pitch(*size, field, where);
+  return Length::from_si(checked_pitch(unit.scale.to_si(*size) / n, field, where));
+}
+
 }  // namespace
+
+GsfLayout read_gsf_header(std::string_view head, std::uint64_t file_bytes,
+                          const std::string& where) {
+  ByteCursor cursor(head, where);
+  if (cursor.bytes(std::min(cursor.size(), kGsfMagic.size())) != kGsfMagic) {
+    throw InputError(where, "does not begin with \"Gwyddion Simple Field 1.0\"",
+                     "Export the map to .gsf again");
+  }
+  const auto header_end = head.find('\0');
+  if (header_end == std::string::npos) {
+    throw InputError(where, "no NUL byte ends its header",
+                     "The file is incomplete; copy or export it again");
+  }
+  const Header header(head.substr(kGsfMagic.size(), header_end - kGsfMagic.size()), where);
+  const double nx = header.pixels("XRes"), ny = header.pixels("YRes");
+  check_pixel_counts(nx, ny, where);
+
+  cursor.seek(header_end);
+  const std::uint64_t n_padding = 4 - header_end % 4;
+  for (const char byte : cursor.bytes(n_padding)) {
+    if (byte != '\0') {
+      cursor.fail(fmt::format("{} NUL bytes should end the header", n_padding),
+                  "Export the map to .gsf again");
+    }
+  }
+  const auto n_pixels = static_cast<std::uint64_t>(nx * ny);
+  const std::uint64_t remaining = file_bytes - cursor.offset();
+  if (remaining != 4 * n_pixels) {
+    throw InputError(where,
+                     fmt::format("{} bytes of heights follow its header, but XRes x YRes = {} x "
+                                 "{} needs {}",
+                                 remaining, nx, ny, 4 * n_pixels),
+                     remaining < 4 * n_pixels
+                         ? "The file is incomplete; copy or export it again"
+                         : "The file is damaged or holds more than one map; export it again");
+  }
+  GsfLayout layout;
+  layout.title = header.text("Title");
+  layout.grid.nx = static_cast<Index>(nx);
+  layout.grid.ny = static_cast<Index>(ny);
+  layout.grid.pitch_x = pitch(header, "XReal", nx, where);
+  layout.grid.pitch_y = pitch(header, "YReal", ny, where);
+  static_cast<void>(header.number("XOffset"));  // must be numbers; a map counts from its corner
+  static_cast<void>(header.number("YOffset"));
+  layout.file_unit = header.text("ZUnits");
+  layout.unit = si_unit(layout.file_unit, where);
+  layout.data = cursor.offset();
+  return layout;
+}
 
 const Reader& gsf_reader() {
   static const GsfReader reader;
@@ -166,7 +178,7 @@ void write_gsf(const std::filesystem::path& path, const HeightMap& map, const st
   const CameraGrid& grid = map.grid();
   std::string bytes = fmt::format(
       "{}XRes = {}\nYRes = {}\nXReal = {}\nYReal = {}\nXYUnits = m\nZUnits = m\nTitle = {}\n",
-      kMagic, grid.nx, grid.ny, grid.size_x().si(), grid.size_y().si(), one_line(title));
+      kGsfMagic, grid.nx, grid.ny, grid.size_x().si(), grid.size_y().si(), one_line(title));
   bytes.append(4 - bytes.size() % 4, '\0');
   bytes.reserve(bytes.size() + 4 * static_cast<std::size_t>(map.height().size()));
   for (Index i = 0; i < map.height().size(); ++i) {

@@ -12,9 +12,9 @@
 namespace manoscope::io {
 namespace {
 
-using testing::complaint;
 using testing::contains;
 using testing::little;
+using testing::refusal;
 using testing::TestFolder;
 
 /// A file laid out by hand from the format's description.
@@ -92,17 +92,16 @@ TEST(Gsf, TooFewOrTooManyBytesAreCounted) {
   const TestFolder folder;
   const std::string header = "XRes = 3\nYRes = 2\n";
   const std::string cut = six_heights().substr(0, 23);
-  EXPECT_TRUE(contains(complaint([&] { read_channels(folder.write("a.gsf", gsf(header, cut))); }),
+  EXPECT_TRUE(contains(refusal(folder, "a.gsf", gsf(header, cut)),
                        "23 bytes of heights follow its header, but XRes x YRes = 3 x 2 needs 24"));
-  EXPECT_TRUE(contains(
-      complaint([&] { read_channels(folder.write("a.gsf", gsf(header, six_heights() + "x"))); }),
-      "25 bytes of heights"));
+  EXPECT_TRUE(
+      contains(refusal(folder, "a.gsf", gsf(header, six_heights() + "x")), "25 bytes of heights"));
 }
 
 TEST(Gsf, FaultyHeadersAreNamed) {
   const TestFolder folder;
   const auto fault = [&](const std::string& header) {
-    return complaint([&] { read_channels(folder.write("a.gsf", gsf(header, six_heights()))); });
+    return refusal(folder, "a.gsf", gsf(header, six_heights()));
   };
   EXPECT_TRUE(contains(fault("YRes = 2\n"), "has no XRes"));
   EXPECT_TRUE(contains(fault("XRes = three\nYRes = 2\n"), "XRes is \"three\""));

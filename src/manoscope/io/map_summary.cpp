@@ -2,13 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/io/file_text.hpp"
 
 namespace manoscope::io {
 
 ChannelSummary summarise(const Channel& channel) {
   ChannelSummary summary;
   summary.name = channel.name;
+  summary.page = channel.page;
   summary.unit = channel.unit;
+  summary.file_unit = channel.file_unit;
+  summary.offset_x = channel.offset_x;
+  summary.offset_y = channel.offset_y;
+  summary.settings = channel.settings;
+  summary.warnings = channel.warnings;
   const CameraGrid& grid = channel.grid;
   summary.nx = grid.nx;
   summary.ny = grid.ny;
@@ -56,12 +66,32 @@ ChannelSummary summarise(const Channel& channel) {
   return summary;
 }
 
-MapSummary summarise_map(const std::filesystem::path& path, const ReadOptions& options) {
-  MapSummary summary{path, std::string(find_reader(path).name()), {}};
-  for (const Channel& channel : read_channels(path, options)) {
-    summary.channels.push_back(summarise(channel));
+MapInspection inspect_map(const std::filesystem::path& path, const ReadOptions& options) {
+  const Reader& reader = find_any_reader(path, options);
+  MapInspection inspection;
+  inspection.summary.file = path;
+  inspection.summary.format = std::string(reader.name());
+  inspection.summary.orientation = std::string(reader.orientation());
+  std::vector<Channel> channels = read_channels(path, options);
+  const auto is_shown = [&](const Channel& channel) {
+    return options.channel.empty() ? channel.unit == "m" : channel.name == options.channel;
+  };
+  auto shown = std::find_if(channels.begin(), channels.end(), is_shown);
+  if (shown == channels.end() && !options.channel.empty()) {
+    throw InputError(path.string(), "has no channel \"" + excerpt(options.channel) + "\"",
+                     "`manoscope inspect` without --channel lists them");
   }
-  return summary;
+  if (shown == channels.end()) shown = channels.begin();
+  for (const Channel& channel : channels) {
+    inspection.summary.channels.push_back(summarise(channel));
+  }
+  inspection.grid = shown->grid;
+  inspection.shown = std::move(shown->values);
+  return inspection;
+}
+
+MapSummary summarise_map(const std::filesystem::path& path, const ReadOptions& options) {
+  return inspect_map(path, options).summary;
 }
 
 }  // namespace manoscope::io

@@ -258,9 +258,23 @@ void NetcdfFile::check_room(const Variable& variable) const {
 }
 
 void NetcdfFile::read(const Variable& variable, double* values) const {
+  read_block(variable, std::vector<std::size_t>(variable.shape.size(), 0), variable.shape, values);
+}
+
+void NetcdfFile::read_slice(const Variable& variable, std::size_t index, double* values) const {
+  MANO_ASSERT(!variable.shape.empty() && index < variable.shape[0]);
+  std::vector<std::size_t> start(variable.shape.size(), 0), count = variable.shape;
+  start[0] = index;
+  count[0] = 1;
+  read_block(variable, start, count, values);
+}
+
+void NetcdfFile::read_block(const Variable& variable, const std::vector<std::size_t>& start,
+                            const std::vector<std::size_t>& count, double* values) const {
   check_room(variable);
   const std::string& name = variable.name;
-  const std::size_t size = variable.size();
+  std::size_t size = 1;
+  for (const std::size_t length : count) size *= length;
   nc_type type = NC_NAT;
   check(nc_inq_vartype(id_, variable.id, &type), name);
   if (!is_number(type)) {
@@ -269,13 +283,13 @@ void NetcdfFile::read(const Variable& variable, double* values) const {
   }
   if (type == NC_FLOAT) {
     std::vector<float> stored(size);
-    check(nc_get_var_float(id_, variable.id, stored.data()), name);
+    check(nc_get_vara_float(id_, variable.id, start.data(), count.data(), stored.data()), name);
     for (std::size_t i = 0; i < size; ++i) {
       values[i] = double_from_f32_bits(std::bit_cast<std::uint32_t>(stored[i]));
     }
     return;
   }
-  check(nc_get_var_double(id_, variable.id, values), name);
+  check(nc_get_vara_double(id_, variable.id, start.data(), count.data(), values), name);
   for (std::size_t i = 0; i < size; ++i) {
     values[i] = double_from_f64_bits(std::bit_cast<std::uint64_t>(values[i]));
   }

@@ -81,6 +81,8 @@ class NetcdfFile {
   /// Every value, converted to double, into room for `variable.size()`; signalling NaN become
   /// quiet. This and the following call check_room() first.
   void read(const Variable& variable, double* values) const;
+  /// As read(), of one index of the first dimension.
+  void read_slice(const Variable& variable, std::size_t index, double* values) const;
   std::vector<double> read_doubles(const Variable& variable) const;
   std::vector<int> read_ints(const Variable& variable) const;
   std::vector<std::string> read_strings(const Variable& variable) const;
@@ -88,6 +90,8 @@ class NetcdfFile {
  private:
   NetcdfFile(std::filesystem::path shown_as, bool writing);
   Variable describe(int variable) const;
+  void read_block(const Variable& variable, const std::vector<std::size_t>& start,
+                  const std::vector<std::size_t>& count, double* values) const;
 
   std::unique_lock<std::recursive_mutex> lock_;
   std::filesystem::path shown_as_;

@@ -1,21 +1,28 @@
 // Maps in NetCDF: the program's own (NetCDF-4, CF attributes), and others of the same layout.
 //
 // A map is a numeric variable over two dimensions. The dimension named x counts along the rows and
-// the one named y down the columns; under other names the first counts down. The scale comes from
-// the coordinate variables, which hold pixel centres in any unit of length.
+// the one named y down the columns; under other names the first counts down. A dimension before
+// these two counts the frames of a series. The scale comes from the coordinate variables, which
+// hold pixel centres in any unit of length.
 #include <netcdf.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/io/even_axis.hpp"
 #include "manoscope/io/file_text.hpp"
 #include "manoscope/io/file_units.hpp"
 #include "manoscope/io/formats.hpp"
+#include "manoscope/io/hdf5_formats.hpp"
+#include "manoscope/io/hdf5_worker.hpp"
 #include "manoscope/io/netcdf_classic.hpp"
 #include "manoscope/io/netcdf_handle.hpp"
 #include "manoscope/io/writer.hpp"
@@ -24,10 +31,6 @@ namespace manoscope::io {
 namespace {
 
 using Variable = NetcdfFile::Variable;
-
-/// Departure of a coordinate from even spacing, in parts of the whole length, that round-off of
-/// 32-bit coordinates explains (6e-8) but a missing pixel does not (1e-5 at 1e5 pixels).
-constexpr double kSpacingTolerance = 1e-6;
 
 /// "units" as CF has it; some writers say "unit".
 std::string unit_of(const NetcdfFile& file, const Variable& variable) {
@@ -65,17 +68,42 @@ class MapFile {
   explicit MapFile(const std::filesystem::path& path)
       : where_(path.string()), file_(NetcdfFile::open(path)) {}
 
-  std::vector<Channel> channels() const {
-    std::vector<Channel> found;
+  std::vector<Channel> channels(const ReadOptions& options) const {
+    std::vector<Variable> maps;
     for (const Variable& variable : file_.variables()) {
-      // One byte a pixel is a picture or a mask.
-      if (!variable.numeric || variable.shape.size() != 2 || variable.bytes_per_value < 2) continue;
-      if (variable.dimensions[0] == variable.dimensions[1]) continue;
-      if (is_map(variable)) found.push_back(channel(variable));
+      if (is_map(variable)) maps.push_back(variable);
     }
-    if (found.empty()) {
+    if (maps.empty()) {
       throw InputError(where_, "holds no map: no variable of numbers over two length coordinates",
                        "Store the heights as height(y, x) with coordinate variables y and x");
+    }
+    // Numbered before one is chosen: as `inspect` numbers them.
+    const bool any_series = std::any_of(maps.begin(), maps.end(), is_series);
+    std::vector<int> numbers(maps.size());
+    std::iota(numbers.begin(), numbers.end(), 1);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      if (maps[i].name != options.channel) continue;
+      maps = {maps[i]};
+      numbers = {numbers[i]};
+    }
+    check_together(maps, options);
+    std::vector<Channel> found;
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      const std::size_t n_frames = is_series(maps[i]) ? maps[i].shape[0] : 1;
+      for (std::size_t frame = 0; frame < n_frames; ++frame) {
+        if (options.page != 0 && any_series) frame = static_cast<std::size_t>(options.page) - 1;
+        if (frame >= n_frames) break;
+        const int page = any_series ? static_cast<int>(frame) + 1 : numbers[i];
+        if (options.page == 0 || options.page == page) {
+          found.push_back(channel(maps[i], frame));
+          found.back().page = page;
+        }
+        if (options.page != 0) break;
+      }
+    }
+    if (found.empty()) {
+      throw InputError(where_, fmt::format("has no page {}; it has {}", options.page, told(maps)),
+                       "Name a page that is there");
     }
     return found;
   }
@@ -92,16 +120,60 @@ class MapFile {
     return variable;
   }
 
-  /// A dimension without coordinates leaves the scale to the user; one that counts runs, pressures
-  /// or seconds is no axis of a map.
+  /// Maps one after another, over time, say: the dimension before y and x counts them.
+  static bool is_series(const Variable& variable) { return variable.shape.size() == 3; }
+
+  /// A variable of numbers over two lengths, or a series of such. A dimension without coordinates
+  /// leaves the scale to the user; one that counts runs, pressures or seconds is no axis of a map.
   bool is_map(const Variable& variable) const {
-    for (const std::string& dimension : variable.dimensions) {
-      const auto axis = coordinate(dimension);
+    // One byte a pixel is a picture or a mask.
+    if (!variable.numeric || variable.bytes_per_value < 2) return false;
+    if (variable.shape.size() != 2 && !is_series(variable)) return false;
+    const std::size_t down = variable.shape.size() - 2;
+    if (variable.dimensions[down] == variable.dimensions[down + 1]) return false;
+    for (std::size_t d = down; d < down + 2; ++d) {
+      const auto axis = coordinate(variable.dimensions[d]);
       if (!axis) continue;
       const std::string unit = unit_of(file_, *axis);
       if (!axis->numeric || (!unit.empty() && !length_scale(unit))) return false;
     }
-    return true;
+    if (!is_series(variable)) return true;
+    // What counts labelled things (a matrix for each run) is no series of maps.
+    const auto counter = coordinate(variable.dimensions[0]);
+    return variable.shape[0] > 0 && (!counter || counter->numeric);
+  }
+
+  static std::string told(const std::vector<Variable>& maps) {
+    constexpr std::size_t kMost = 20;
+    std::vector<std::string> words;
+    for (const Variable& map : maps) {
+      if (words.size() == kMost) {
+        words.push_back(fmt::format("and {} more", maps.size() - kMost));
+        break;
+      }
+      const std::size_t down = map.shape.size() - 2;
+      words.push_back(fmt::format("\"{}\" {} x {}{}", excerpt(map.name), map.shape[down + 1],
+                                  map.shape[down],
+                                  is_series(map) ? fmt::format(", {} frames", map.shape[0]) : ""));
+    }
+    return fmt::format("{}", fmt::join(words, ", "));
+  }
+
+  /// Beyond 100 million pixels (800 MB), maps are read one by one.
+  void check_together(const std::vector<Variable>& maps, const ReadOptions& options) const {
+    constexpr double kMostPixelsAtOnce = 1e8, kMostMapsAtOnce = 4096.0;
+    double n_pixels = 0.0, n_maps = 0.0;
+    for (const Variable& map : maps) {
+      file_.check_room(map);
+      n_pixels += static_cast<double>(map.size());
+      n_maps += is_series(map) ? static_cast<double>(map.shape[0]) : 1.0;
+    }
+    if (options.page != 0 || n_maps <= 1.0) return;
+    if (n_pixels <= kMostPixelsAtOnce && n_maps <= kMostMapsAtOnce) return;
+    throw InputError(
+        where_, fmt::format("holds more than is read at once: {}", told(maps)),
+        "Name one with --channel, or instrument.channel in the experiment file; of a series, one "
+        "frame as FILE#2 or with --page");
   }
 
   /// Spacing of a coordinate in m, 0 where the file gives none.
@@ -112,24 +184,7 @@ class MapFile {
     if (!scale) return {};
     const std::vector<double> x = file_.read_doubles(*axis);
     const std::string where = place(*axis);
-    const bool numbers = std::all_of(x.begin(), x.end(), [](double value) {
-      return std::isfinite(value) && std::abs(value) < kLargestValue;
-    });
-    const double length = numbers ? x.back() - x.front() : 0.0;
-    if (!(length > 0.0)) {
-      throw InputError(where, "the coordinate does not rise from its first to its last value",
-                       "Store coordinates in ascending order, without gaps");
-    }
-    const double step = length / static_cast<double>(x.size() - 1);
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double even = x.front() + static_cast<double>(i) * step;
-      if (std::abs(x[i] - even) > kSpacingTolerance * length) {
-        throw InputError(
-            where,
-            fmt::format("value {} is {:.8g}, but even spacing asks for {:.8g}", i, x[i], even),
-            "Resample the map to evenly spaced pixels");
-      }
-    }
+    const double step = even_step(x, where);
     if (!(scale->factor > 0.0 && scale->factor < 1e30 && step < 1e30)) {
       throw InputError(
           where,
@@ -139,11 +194,12 @@ class MapFile {
     return Length::from_si(checked_pitch(scale->factor * step, "its spacing", where));
   }
 
-  Channel channel(const Variable& variable) const {
+  Channel channel(const Variable& variable, std::size_t frame) const {
     const std::string where = place(variable);
-    const bool transposed =
-        lower_case(variable.dimensions[0]) == "x" && lower_case(variable.dimensions[1]) == "y";
-    const std::size_t along_x = transposed ? 0 : 1, down_y = 1 - along_x;
+    const std::size_t first = variable.shape.size() - 2;  // of the dimensions of the map
+    const bool transposed = lower_case(variable.dimensions[first]) == "x" &&
+                            lower_case(variable.dimensions[first + 1]) == "y";
+    const std::size_t along_x = first + (transposed ? 0 : 1), down_y = first + (transposed ? 1 : 0);
     check_pixel_counts(static_cast<double>(variable.shape[along_x]),
                        static_cast<double>(variable.shape[down_y]), where);
     Channel channel;
@@ -164,9 +220,13 @@ class MapFile {
                        "Both must be finite numbers, the first not 0");
     }
     file_.check_room(variable);
-    channel.values.resize(static_cast<Index>(variable.shape[0]),
-                          static_cast<Index>(variable.shape[1]));
-    file_.read(variable, channel.values.data());
+    channel.values.resize(static_cast<Index>(variable.shape[first]),
+                          static_cast<Index>(variable.shape[first + 1]));
+    if (is_series(variable)) {
+      file_.read_slice(variable, frame, channel.values.data());
+    } else {
+      file_.read(variable, channel.values.data());
+    }
     const double fill = fill_value(file_, variable);
     for (Index i = 0; i < channel.values.size(); ++i) {
       double& value = channel.values.data()[i];
@@ -196,17 +256,35 @@ class NetcdfReader final : public Reader {
     if (is_classic_netcdf(probe.head)) return 100;
     // NetCDF-4 is one of many kinds of HDF5 file: a reader that knows its kind goes first.
     if (!probe.head.starts_with("\x89HDF\r\n\x1a\n")) return 0;
+    // What the NetCDF library says of itself in every file it makes, near its beginning.
+    if (probe.head.find("_NCProperties") != std::string_view::npos) return 70;
     const std::string extension = lower_case(probe.path.extension().string());
     const auto ours = extensions();
     return std::find(ours.begin(), ours.end(), extension) != ours.end() ? 70 : 20;
   }
 
-  std::vector<Channel> read(const std::filesystem::path& path, const ReadOptions&) const override {
-    return MapFile(path).channels();
+  std::vector<Channel> read(const std::filesystem::path& path,
+                            const ReadOptions& options) const override {
+    // What is built on HDF5 is parsed apart; a classic file is checked byte by byte before the
+    // library sees it.
+    if (is_classic_netcdf(first_bytes(path))) return parse_netcdf(path, options);
+    return read_in_worker("netcdf", path, options);
+  }
+
+ private:
+  static std::string first_bytes(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string bytes(4, '\0');
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return bytes;
   }
 };
 
 }  // namespace
+
+std::vector<Channel> parse_netcdf(const std::filesystem::path& path, const ReadOptions& options) {
+  return MapFile(path).channels(options);
+}
 
 const Reader& netcdf_reader() {
   static const NetcdfReader reader;

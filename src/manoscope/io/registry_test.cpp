@@ -87,8 +87,9 @@ TEST(ReadHeightMap, ChoosesAmongChannelsOnlyWhenToldOrForced) {
   options.pitch_x = options.pitch_y = 1.0 * um;
   const auto read = [&] { return read_height_map(path, options).height()(0, 1); };
   EXPECT_TRUE(contains(complaint(read), "--channel"));
-  EXPECT_TRUE(
-      contains(complaint(read), "\"before\" [m], \"after\" [m], \"current\" [A], \"raw\" [?]"));
+  EXPECT_TRUE(contains(complaint(read),
+                       "#1 \"before\" 2 x 2 [m], #2 \"after\" 2 x 2 [m], "
+                       "#3 \"current\" 2 x 2 [A], #4 \"raw\" 2 x 2 [?]"));
   options.channel = "after";
   EXPECT_NEAR(read(), 2e-6, 1e-20);
   options.channel = "current";

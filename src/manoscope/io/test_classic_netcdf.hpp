@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "manoscope/io/test_files.hpp"
+#include "manoscope/io/test_bytes.hpp"
 
 namespace manoscope::io::testing {
 

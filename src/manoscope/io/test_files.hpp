@@ -5,15 +5,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <bit>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <string_view>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/io/reader.hpp"
+#include "manoscope/io/test_bytes.hpp"
 
 namespace manoscope::io::testing {
 
@@ -47,11 +46,6 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
-inline std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// What `body` complains about: "<where> | <found> | <mend>", or "" if it does not.
 template <class Body>
 std::string complaint(Body&& body) {
@@ -63,23 +57,16 @@ std::string complaint(Body&& body) {
   return {};
 }
 
+/// What reading a file of these bytes complains about, as above.
+inline std::string refusal(const TestFolder& folder, const std::string& name,
+                           std::string_view bytes) {
+  return complaint([&] { static_cast<void>(read_channels(folder.write(name, bytes))); });
+}
+
 inline ::testing::AssertionResult contains(const std::string& text, const std::string& part) {
   if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
   return ::testing::AssertionFailure() << "\"" << text << "\" does not contain \"" << part << "\"";
 }
-
-inline std::string little(std::uint64_t value, int n_bytes) {
-  std::string bytes;
-  for (int i = 0; i < n_bytes; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xff);
-  return bytes;
-}
-inline std::string big(std::uint64_t value, int n_bytes) {
-  const std::string bytes = little(value, n_bytes);
-  return {bytes.rbegin(), bytes.rend()};
-}
-inline std::string little(float value) { return little(std::bit_cast<std::uint32_t>(value), 4); }
-inline std::string big(float value) { return big(std::bit_cast<std::uint32_t>(value), 4); }
-inline std::string big(double value) { return big(std::bit_cast<std::uint64_t>(value), 8); }
 
 /// Shared practice data; empty where it is absent.
 inline std::filesystem::path shared_data(const std::string& name) {

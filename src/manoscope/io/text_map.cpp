@@ -1,4 +1,5 @@
-// Maps as plain text: a matrix of numbers, one row a line, with or without a header.
+// Maps as plain text: a matrix of numbers, one row a line, with or without a header; or a table of
+// points. In UTF-8, Latin-1 or UTF-16.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +12,9 @@
 #include "manoscope/io/file_text.hpp"
 #include "manoscope/io/file_units.hpp"
 #include "manoscope/io/formats.hpp"
+#include "manoscope/io/text_cells.hpp"
 #include "manoscope/io/text_matrix.hpp"
+#include "manoscope/io/text_table.hpp"
 #include "manoscope/io/writer.hpp"
 
 namespace manoscope::io {
@@ -36,44 +39,46 @@ Length pitch_of(const std::optional<Length>& pitch, const std::optional<Length>&
 class TextReader final : public Reader {
  public:
   std::string_view name() const override { return "text"; }
-  std::string_view description() const override { return "text matrix"; }
+  std::string_view description() const override { return "text matrix or table of points"; }
   std::vector<std::string> extensions() const override {
     return {".txt", ".csv", ".tsv", ".asc", ".dat"};
   }
 
+  std::string_view orientation() const override {
+    return "first row of a matrix, smallest y of a table on top; heights positive upwards, as the "
+           "file has them";
+  }
   int score(const Probe& probe) const override {
-    if (!looks_like_text_matrix(probe.head)) return 0;
+    const std::string head = utf8_text(std::string(probe.head));
+    if (!looks_like_text_matrix(head)) return 0;
     const std::string extension = lower_case(probe.path.extension().string());
     const auto ours = extensions();
     return std::find(ours.begin(), ours.end(), extension) != ours.end() ? 40 : 20;
   }
 
-  std::vector<Channel> read(const std::filesystem::path& path, const ReadOptions&) const override {
+  std::vector<Channel> read(const std::filesystem::path& path,
+                            const ReadOptions& options) const override {
     const std::string where = path.string();
-    TextMatrix matrix = parse_text_matrix(read_file(path), where);
+    TextMatrix matrix = parse_text_matrix(utf8_text(read_file(path)), where);
     const TextHeader& header = matrix.header;
+    const bool scaled = header.pitch_x || header.pitch_y || header.size_x || header.size_y;
+    const bool narrow = matrix.values.cols() <= 3 && matrix.values.rows() > matrix.values.cols();
+    std::vector<Channel> channels;
+    if (!matrix.labels.empty() || (narrow && !scaled)) {
+      channels.push_back(channel_of_table(matrix, options, where));
+      return channels;
+    }
     Channel channel;
     channel.name = header.name;
     channel.grid.nx = matrix.values.cols();
     channel.grid.ny = matrix.values.rows();
     channel.grid.pitch_x = pitch_of(header.pitch_x, header.size_x, channel.grid.nx, "x", where);
     channel.grid.pitch_y = pitch_of(header.pitch_y, header.size_y, channel.grid.ny, "y", where);
-    if (channel.grid.nx <= 3 && channel.grid.ny > channel.grid.nx &&
-        channel.grid.pitch_x == Length{}) {
-      throw InputError(
-          where,
-          fmt::format(
-              "has {} columns and no lateral scale: a list of points or a profile, not a map",
-              channel.grid.nx),
-          "Give the heights as a matrix, one row of pixels a line; if it is a matrix, say so by "
-          "header lines such as \"# pitch x: 1.5 um\"");
-    }
     channel.file_unit = header.unit;
     const SiUnit unit = si_unit(header.unit, where);
     channel.unit = unit.name;
     channel.values = std::move(matrix.values);
     scale_values(channel.values, unit.scale, where);
-    std::vector<Channel> channels;
     channels.push_back(std::move(channel));
     return channels;
   }

@@ -16,6 +16,7 @@ namespace {
 
 using testing::complaint;
 using testing::contains;
+using testing::refusal;
 using testing::TestFolder;
 
 Array2 matrix_of(const std::string& text) { return parse_text_matrix(text, "m.txt").values; }
@@ -186,18 +187,14 @@ TEST(TextMap, SizeAndPitchMustAgree) {
                        "3 pixels of 1000 um along x do not make a map of 6000 um"));
 }
 
-TEST(TextMap, ListsOfPointsAreNotTakenForMaps) {
+TEST(TextMap, NarrowMatricesNeedAHeaderThatSaysSo) {
   const TestFolder folder;
-  std::string xyz;
-  for (int i = 0; i < 16; ++i) {
-    xyz += std::to_string(i / 4) + " " + std::to_string(i % 4) + " 1.5\n";
-  }
-  const auto path = folder.write("a.txt", xyz);
-  ReadOptions options;
-  options.height_unit = "nm";
-  options.pitch_x = options.pitch_y = 1.0 * um;  // given by the user, but still three columns
-  EXPECT_TRUE(contains(complaint([&] { read_height_map(path, options); }),
-                       "has 3 columns and no lateral scale"));
+  // Three columns that are no points on a grid.
+  const auto path = folder.write("a.txt", "1 2 3\n1 2 3\n1 2 3\n1 2 3\n");
+  EXPECT_TRUE(
+      contains(complaint([&] { read_height_map(path); }), "two points lie at x = 1, y = 2"));
+  EXPECT_TRUE(
+      contains(refusal(folder, "b.txt", "1\n2\n3\n"), "has 1 columns and no lateral scale"));
   // Narrow maps exist: their header says so.
   EXPECT_NO_THROW(read_height_map(
       folder.write("b.txt", "# pixel size: 1 um\n# unit: nm\n1 2 3\n1 2 3\n1 2 3\n1 2 3\n")));
@@ -276,9 +273,9 @@ TEST(TextMap, ReadsFilesOfOtherPrograms) {
   EXPECT_EQ(map.grid().nx, 10);
   EXPECT_TRUE((map.height().topRows(5) == 2.0).all());
   EXPECT_TRUE((map.height().bottomRows(map.grid().ny - 5) == 0.0).all());
-  // Points, profiles and UTF-16 tables are refused even with a scale.
-  for (const char* name : {"st_xyz-1.txt", "st_xyz-2.txt", "st_csv-1.csv", "st_csv-2.csv",
-                           "st_csv-3.csv", "st_dektak-1.csv", "st_opdx-3.txt", "st_hfm-1.hfm"}) {
+  // Profiles and files of other kinds are refused even with a scale.
+  for (const char* name : {"st_csv-1.csv", "st_csv-2.csv", "st_csv-3.csv", "st_dektak-1.csv",
+                           "st_opdx-3.txt", "st_hfm-1.hfm"}) {
     EXPECT_THROW(read_height_map(testing::shared_data(std::string("maps/") + name), options),
                  InputError)
         << name;

@@ -3,152 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/file_text.hpp"
 #include "manoscope/io/file_units.hpp"
+#include "manoscope/io/text_cells.hpp"
 
 namespace manoscope::io {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-bool is_blank(char letter) { return letter == ' ' || letter == '\t' || letter == '\r'; }
-
-std::string_view strip(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-bool is_comment(std::string_view line) {
-  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
-}
-
-/// Lines of a text ended by LF, CR LF or CR, counted from 1.
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {
-    if (rest_.starts_with("\xEF\xBB\xBF")) rest_.remove_prefix(3);
-    // CR alone ends the lines only where there is no LF at all.
-    end_ = rest_.find('\n') == std::string_view::npos ? '\r' : '\n';
-  }
-  bool next(std::string_view& line) {
-    if (rest_.empty()) return false;
-    const void* found = std::memchr(rest_.data(), end_, rest_.size());
-    const std::size_t length =
-        found == nullptr ? rest_.size()
-                         : static_cast<std::size_t>(static_cast<const char*>(found) - rest_.data());
-    line = strip_end(rest_.substr(0, length));
-    rest_.remove_prefix(found == nullptr ? length : length + 1);
-    ++number_;
-    return true;
-  }
-  int number() const { return number_; }
-
- private:
-  static std::string_view strip_end(std::string_view line) {
-    while (line.ends_with('\r')) line.remove_suffix(1);
-    return line;
-  }
-  std::string_view rest_;
-  char end_ = '\n';
-  int number_ = 0;
-};
-
-bool is_missing_word(std::string_view cell) {
-  constexpr std::array<std::string_view, 18> kWords{
-      "",     "nan",     "bad", "--",      "---",      "na",  "n/a",     "null", "none",
-      "void", "missing", "***", "1.#qnan", "-1.#qnan", "#na", "-1.#ind", "-nan", "masked"};
-  if (cell.size() > 8) return false;
-  const std::string lower = lower_case(cell);
-  return std::find(kWords.begin(), kWords.end(), lower) != kWords.end() || lower == "inf" ||
-         lower == "-inf" || lower == "1.#inf" || lower == "-1.#inf" || lower == "-1.#ind00";
-}
-
-/// The value of one cell; NaN for a missing one, nullopt for what is neither.
-std::optional<double> cell_value(std::string_view cell, bool comma_is_decimal) {
-  std::string_view digits = cell;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc() && end == digits.data() + digits.size()) {
-    return std::isfinite(value) ? value : kMissing;
-  }
-  if (comma_is_decimal && error == std::errc() && *end == ',' && digits.size() < 64) {
-    std::array<char, 64> point{};
-    std::copy(digits.begin(), digits.end(), point.begin());
-    point[static_cast<std::size_t>(end - digits.data())] = '.';
-    const char* const last = point.data() + digits.size();
-    const auto again = std::from_chars(point.data(), last, value);
-    if (again.ec == std::errc() && again.ptr == last && std::isfinite(value)) return value;
-  }
-  if (is_missing_word(cell)) return kMissing;
-  return std::nullopt;
-}
-
-/// Hands out the cells of one line.
-class Cells {
- public:
-  Cells(std::string_view line, char delimiter)
-      : rest_(delimiter == '\t' ? line : strip(line)), delimiter_(delimiter) {}
-
-  bool next(std::string_view& cell) {
-    if (done_) return false;
-    if (delimiter_ == ' ') {
-      std::size_t length = 0;
-      while (length < rest_.size() && !is_blank(rest_[length])) ++length;
-      cell = rest_.substr(0, length);
-      while (length < rest_.size() && is_blank(rest_[length])) ++length;
-      rest_.remove_prefix(length);
-      done_ = rest_.empty();
-      return true;
-    }
-    const auto end = rest_.find(delimiter_);
-    cell = strip(rest_.substr(0, end));
-    done_ = end == std::string_view::npos;
-    if (!done_) rest_.remove_prefix(end + 1);
-    return true;
-  }
-
- private:
-  std::string_view rest_;
-  char delimiter_;
-  bool done_ = false;
-};
-
-/// The sign between the cells of a row. A comma next to a blank or to another comma, or in a row
-/// without blanks, parts cells; between digits of a row with blanks it is the decimal mark.
-char delimiter_of(std::string_view row) {
-  if (row.find(';') != std::string_view::npos) return ';';
-  const bool tab = row.find('\t') != std::string_view::npos;
-  const std::string_view bare = strip(row);
-  bool comma = false, blank = tab, comma_by_itself = false;
-  for (std::size_t i = 0; i < bare.size(); ++i) {
-    if (bare[i] == ',') {
-      comma = true;
-      const bool before = i > 0 && bare[i - 1] >= '0' && bare[i - 1] <= '9';
-      const bool after = i + 1 < bare.size() && bare[i + 1] >= '0' && bare[i + 1] <= '9';
-      comma_by_itself = comma_by_itself || !before || !after;
-    }
-    blank = blank || is_blank(bare[i]);
-  }
-  if (comma && (comma_by_itself || !blank)) return ',';
-  if (!tab) return ' ';
-  // Tabs part cells (and leave some empty) unless blanks do so too.
-  Cells cells(row, '\t');
-  for (std::string_view cell; cells.next(cell);) {
-    if (std::any_of(cell.begin(), cell.end(), is_blank)) return ' ';
-  }
-  return '\t';
-}
 
 /// True if every cell is a number or a missing sample. A row may begin with missing samples, or
 /// hold nothing else: words such as "Bad" and "nan" count, others do not.
@@ -172,6 +37,7 @@ class Parser {
 
   TextMatrix run() {
     survey();
+    if (n_rows_ == 0 && !labels_.empty()) throw not_a_header();
     if (n_rows_ == 0) {
       throw InputError(where_, "holds no numbers", "Give a matrix of heights, one row a line");
     }
@@ -208,11 +74,11 @@ class Parser {
           continue;
         }
         if (!may_be_row(line)) {
+          // A line of words may label the columns, if the next row has as many cells.
+          if (!labels_.empty()) throw not_a_header();
           if (!read_header_line(bare, matrix_.header, place(lines))) {
-            throw InputError(
-                place(lines),
-                fmt::format("\"{}\" is neither a row of numbers nor a header line", excerpt(bare)),
-                "Put # before header lines; write numbers as 1.5e-6 or 1,5e-6");
+            labels_ = line;
+            labels_place_ = place(lines);
           }
           continue;
         }
@@ -221,11 +87,28 @@ class Parser {
         matrix_.delimiter = delimiter_of(line);
         Cells cells(line, matrix_.delimiter);
         for (std::string_view cell; cells.next(cell);) ++n_columns_;
+        keep_labels();
       } else if (is_comment(bare)) {
         continue;
       }
       ++n_rows_;
     }
+  }
+
+  InputError not_a_header() const {
+    return {labels_place_,
+            fmt::format("\"{}\" is neither a row of numbers nor a header line", excerpt(labels_)),
+            "Put # before header lines; write numbers as 1.5e-6 or 1,5e-6"};
+  }
+
+  void keep_labels() {
+    if (labels_.empty()) return;
+    Cells cells(labels_, matrix_.delimiter);
+    for (std::string_view cell; cells.next(cell);) {
+      if (matrix_.labels.size() == n_columns_) throw not_a_header();
+      matrix_.labels.emplace_back(cell.substr(0, 200));
+    }
+    if (matrix_.labels.size() != n_columns_) throw not_a_header();
   }
 
   void fill() {
@@ -267,12 +150,15 @@ class Parser {
     if (last_cell_always_empty && n_columns_ > 1) {
       const Array2 kept = matrix_.values.leftCols(matrix_.values.cols() - 1);
       matrix_.values = kept;
+      if (!matrix_.labels.empty()) matrix_.labels.pop_back();
     }
   }
 
   std::string_view text_;
   std::string where_;
   TextMatrix matrix_;
+  std::string_view labels_;
+  std::string labels_place_;
   std::size_t n_columns_ = 0, n_rows_ = 0;
   int first_line_ = 0;
 };

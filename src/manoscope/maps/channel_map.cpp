@@ -8,31 +8,11 @@
 namespace manoscope::maps {
 namespace {
 
-/// Grid of the camera's pixels seen along the channel's axes, for a frame without rotation.
-ChannelGrid axis_grid(const CameraGrid& camera, const ChannelFrame& frame) {
-  const bool along_columns = frame.along_columns();
-  const Length pitch_x = along_columns ? camera.pitch_x : camera.pitch_y;
-  const Length pitch_z = along_columns ? camera.pitch_y : camera.pitch_x;
-  const Length size_x = along_columns ? camera.size_x() : camera.size_y();
-  const Length size_z = along_columns ? camera.size_y() : camera.size_x();
-  const Length origin_x = along_columns ? frame.origin_x : frame.origin_y;
-  const Length origin_z = along_columns ? frame.origin_y : frame.origin_x;
-  ChannelGrid grid;
-  grid.nx = along_columns ? camera.nx : camera.ny;
-  grid.nz = along_columns ? camera.ny : camera.nx;
-  grid.pitch_x = pitch_x;
-  grid.pitch_z = pitch_z;
-  // The first sample is the pixel at the lowest x (z): the map's far end if the axis is reversed.
-  grid.x0 = (frame.flow_sign() > 0.0 ? -origin_x : origin_x - size_x) + 0.5 * pitch_x;
-  grid.z0 = (frame.across_sign() > 0.0 ? -origin_z : origin_z - size_z) + 0.5 * pitch_z -
-            0.5 * frame.width;
-  return grid;
-}
-
 /// Moves pixels only: transposes and reverses.
 template <class Array>
 Array reorder(const Array& camera, const ChannelFrame& frame) {
   const bool reverse_x = frame.flow_sign() < 0.0, reverse_z = frame.across_sign() < 0.0;
+  if (frame.along_columns() && !reverse_x && !reverse_z) return camera;
   const Index nx = frame.along_columns() ? camera.cols() : camera.rows();
   const Index nz = frame.along_columns() ? camera.rows() : camera.cols();
   Array result(nz, nx);
@@ -49,7 +29,7 @@ Array reorder(const Array& camera, const ChannelFrame& frame) {
 ChannelMap rotated(const HeightMap& map, const ChannelFrame& frame) {
   const CameraGrid& camera = map.grid();
   ChannelMap result;
-  result.grid = axis_grid(camera, frame);
+  result.grid = channel_grid(camera, frame);
   const ChannelGrid& grid = result.grid;
   result.height = Array2::Zero(grid.nz, grid.nx);
   result.flags = Flags2::Constant(grid.nz, grid.nx, PixelFlag::no_data);
@@ -78,12 +58,32 @@ ChannelMap rotated(const HeightMap& map, const ChannelFrame& frame) {
 
 }  // namespace
 
+ChannelGrid channel_grid(const CameraGrid& camera, const ChannelFrame& frame) {
+  const bool along_columns = frame.along_columns();
+  const Length pitch_x = along_columns ? camera.pitch_x : camera.pitch_y;
+  const Length pitch_z = along_columns ? camera.pitch_y : camera.pitch_x;
+  const Length size_x = along_columns ? camera.size_x() : camera.size_y();
+  const Length size_z = along_columns ? camera.size_y() : camera.size_x();
+  const Length origin_x = along_columns ? frame.origin_x : frame.origin_y;
+  const Length origin_z = along_columns ? frame.origin_y : frame.origin_x;
+  ChannelGrid grid;
+  grid.nx = along_columns ? camera.nx : camera.ny;
+  grid.nz = along_columns ? camera.ny : camera.nx;
+  grid.pitch_x = pitch_x;
+  grid.pitch_z = pitch_z;
+  // The first sample is the pixel at the lowest x (z): the map's far end if the axis is reversed.
+  grid.x0 = (frame.flow_sign() > 0.0 ? -origin_x : origin_x - size_x) + 0.5 * pitch_x;
+  grid.z0 = (frame.across_sign() > 0.0 ? -origin_z : origin_z - size_z) + 0.5 * pitch_z -
+            0.5 * frame.width;
+  return grid;
+}
+
 ChannelMap to_channel_frame(const HeightMap& map, const ChannelFrame& frame) {
   ChannelMap result;
   if (frame.rotation != Angle{} && map.grid().nx >= 2 && map.grid().ny >= 2) {
     result = rotated(map, frame);
   } else {
-    result.grid = axis_grid(map.grid(), frame);
+    result.grid = channel_grid(map.grid(), frame);
     result.height = reorder(map.height(), frame);
     result.flags = reorder(map.flags(), frame);
   }
@@ -91,17 +91,23 @@ ChannelMap to_channel_frame(const HeightMap& map, const ChannelFrame& frame) {
   return result;
 }
 
-Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_width,
-                Length margin) {
+Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_width, Length margin,
+                const CentreLine& centre) {
   const double left = -margin.si(), right = channel_length.si() + margin.si();
   const double half = 0.5 * channel_width.si() + margin.si();
-  Flags1 beyond_ends(grid.nx);
-  for (Index ix = 0; ix < grid.nx; ++ix) {
-    beyond_ends[ix] = grid.x(ix) > left && grid.x(ix) < right ? FlagBits{0} : FlagBits{1};
-  }
   Flags2 mask = Flags2::Ones(grid.nz, grid.nx);
-  for (Index iz = 0; iz < grid.nz; ++iz) {
-    if (std::abs(grid.z(iz)) < half) mask.row(iz) = beyond_ends.transpose();
+  for (Index ix = 0; ix < grid.nx; ++ix) {
+    const double x = grid.x(ix);
+    if (!(x > left && x < right)) continue;
+    const double middle = centre.z(x, channel_length.si());
+    const auto row = [&](double z) { return (z - grid.z(0)) / grid.pitch_z.si(); };
+    // Rows strictly between the two sides.
+    const auto first = std::max<Index>(0, static_cast<Index>(std::floor(row(middle - half))));
+    const auto last =
+        std::min<Index>(grid.nz - 1, static_cast<Index>(std::ceil(row(middle + half))));
+    for (Index iz = first; iz <= last; ++iz) {
+      if (std::abs(grid.z(iz) - middle) < half) mask(iz, ix) = 0;
+    }
   }
   return mask;
 }

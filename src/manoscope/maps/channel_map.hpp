@@ -4,6 +4,7 @@
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/grid.hpp"
 #include "manoscope/core/height_map.hpp"
+#include "manoscope/maps/centre_line.hpp"
 
 namespace manoscope::maps {
 
@@ -17,6 +18,9 @@ struct ChannelMap {
   Flags2 flags;
 };
 
+/// Grid of the camera's pixels seen along the channel's axes, the rotation left out.
+ChannelGrid channel_grid(const CameraGrid& camera, const ChannelFrame& frame);
+
 /// Turns a camera map into the channel's frame.
 ///
 /// Without rotation pixels are moved, not interpolated. With rotation each sample is the bilinear
@@ -25,8 +29,9 @@ struct ChannelMap {
 ChannelMap to_channel_frame(const HeightMap& map, const ChannelFrame& frame);
 
 /// Samples on the rigid rim: farther than `margin` outside the channel's rectangle.
+/// @param centre  where the rectangle's middle runs in this map.
 /// @return (nz, nx), 1 on the rim.
-Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_width,
-                Length margin);
+Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_width, Length margin,
+                const CentreLine& centre = {});
 
 }  // namespace manoscope::maps

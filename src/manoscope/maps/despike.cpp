@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
+#include "manoscope/numerics/lanes.hpp"
 
 namespace manoscope::maps {
 namespace {
@@ -41,38 +43,6 @@ double step_along(const ChannelMap& map, Index iz, Index ix, Index dz, Index dx)
   return -1.0;
 }
 
-/// Steps of row iz as if every pixel were good, from its third column to its third last.
-void plain_steps(const Array2& height, Index iz, Array2& steps) {
-  const Index n = height.cols() - 4;
-  const auto pixels = [&](Index dz, Index dx) { return height.row(iz + dz).segment(2 + dx, n); };
-  const auto off_mean = [&](Index dz, Index dx) {
-    return (pixels(0, 0) - 0.5 * (pixels(-dz, -dx) + pixels(dz, dx))).abs();
-  };
-  auto row = steps.row(iz).segment(2, n);
-  row = off_mean(0, 1);
-  row = row.min(off_mean(0, 2));
-  row = row.min(off_mean(1, 0));
-  row = row.min(off_mean(2, 0));
-}
-
-/// Whether anything keeps the pixels of row iz from their plain steps: a flag on them or on one of
-/// their eight neighbours, or the edge of the map.
-void find_hindered(const Flags2& flags, Index iz, Flags1& hindered) {
-  const Index nz = flags.rows(), nx = flags.cols();
-  if (iz < 2 || iz >= nz - 2 || nx < 5) {
-    hindered.setOnes();
-    return;
-  }
-  hindered.head(2).setOnes();
-  hindered.tail(2).setOnes();
-  const FlagBits* here = &flags(iz, 0);
-  for (Index ix = 2; ix < nx - 2; ++ix) {
-    hindered[ix] = static_cast<FlagBits>(here[ix] | here[ix - 1] | here[ix + 1] | here[ix - 2] |
-                                         here[ix + 2] | here[ix - nx] | here[ix + nx] |
-                                         here[ix - 2 * nx] | here[ix + 2 * nx]);
-  }
-}
-
 /// The smaller of a pixel's steps along x and z; -1 where either is missing.
 double careful_step(const ChannelMap& map, Index iz, Index ix) {
   if (map.flags(iz, ix) != 0) return -1.0;
@@ -82,35 +52,130 @@ double careful_step(const ChannelMap& map, Index iz, Index ix) {
   return along_z < 0.0 ? -1.0 : std::min(along_x, along_z);
 }
 
-/// (nz, nx) step of every pixel, -1 where there is none.
-Array2 all_steps(const ChannelMap& map) {
-  Array2 steps(map.grid.nz, map.grid.nx);
-  Flags1 hindered(map.grid.nx);
-  for (Index iz = 0; iz < map.grid.nz; ++iz) {
-    find_hindered(map.flags, iz, hindered);
-    if ((hindered == 0).any()) plain_steps(map.height, iz, steps);
-    for (Index ix = 0; ix < map.grid.nx; ++ix) {
-      if (hindered[ix] != 0) steps(iz, ix) = careful_step(map, iz, ix);
-    }
-  }
-  return steps;
-}
+/// The rows around one, flagged pixels and those beyond the map at kAbsent.
+class RowWindow {
+ public:
+  static constexpr Index kReach = 2;
+  static constexpr double kAbsent = 1e200;
 
-/// Upper decile of the steps of the 7 x 7 pixels around: a clamped corner fills a quarter of them.
-double local_step(const Array2& steps, Index iz, Index ix) {
-  constexpr Index kReach = 3;
-  std::vector<double> around;
-  for (Index jz = std::max<Index>(0, iz - kReach); jz <= std::min(steps.rows() - 1, iz + kReach);
-       ++jz) {
-    for (Index jx = std::max<Index>(0, ix - kReach); jx <= std::min(steps.cols() - 1, ix + kReach);
-         ++jx) {
-      if (steps(jz, jx) >= 0.0) around.push_back(steps(jz, jx));
+  explicit RowWindow(const ChannelMap& map)
+      : map_(map), stride_(map.grid.nx + 2 * kReach + numerics::kLanes) {
+    rows_.assign(static_cast<std::size_t>(kRows * stride_), kAbsent);
+    for (Index iz = 0; iz < kReach; ++iz) fill(iz);
+  }
+  /// Makes row iz the middle one; called for 0, 1, 2 ...
+  void move_to(Index iz) {
+    middle_ = iz;
+    fill(iz + kReach);
+  }
+  /// First pixel of a row, `dz` beyond the middle one.
+  const double* row(Index dz) const { return rows_.data() + offset(middle_ + dz); }
+
+ private:
+  static constexpr Index kRows = 2 * kReach + 1;
+
+  Index offset(Index iz) const { return (iz + kRows) % kRows * stride_ + kReach; }
+  void fill(Index iz) {
+    double* const to = rows_.data() + offset(iz);
+    const Index nx = map_.grid.nx;
+    if (iz >= map_.grid.nz) {
+      std::fill(to, to + nx, kAbsent);
+      return;
+    }
+    const double* const height = map_.height.data() + iz * nx;
+    const FlagBits* const flags = map_.flags.data() + iz * nx;
+    for (Index ix = 0; ix < nx; ++ix) to[ix] = flags[ix] == 0 ? height[ix] : kAbsent;
+  }
+
+  const ChannelMap& map_;
+  Index stride_, middle_ = 0;
+  std::vector<double> rows_;
+};
+
+/// Steps of a row from its good pairs at +-1 and +-2; kUnknown where an axis has none, or the pixel
+/// itself is flagged. `found` lists the pixels above `floor`.
+constexpr double kUnknown = RowWindow::kAbsent;
+
+struct RowSteps {
+  template <class Lanes>
+  [[gnu::always_inline]] static void run(const RowWindow* window, Index nx, double floor,
+                                         double* steps, Index* found, Index* n_found) {
+    const double *here = window->row(0), *above = window->row(-1), *below = window->row(1);
+    const double *far_above = window->row(-2), *far_below = window->row(2);
+    const Lanes half = Lanes::all(0.5), one = Lanes::all(1.0), unknown = Lanes::all(kUnknown);
+    const Lanes known = Lanes::all(0.1 * kUnknown), least = Lanes::all(floor);
+    constexpr Index kBlock = 2 * numerics::kLanes;
+    double hits[numerics::kLanes];
+    Index n = 0;
+    for (Index block = 0; block < nx; block += kBlock) {
+      const Index end = std::min(block + kBlock, nx);
+      Lanes above_floor = Lanes::all(0.0);
+      for (Index start = block; start < end; start += numerics::kLanes) {
+        const auto off_mean = [&](const Lanes& at, const double* a, const double* b)
+            __attribute__((always_inline)) {
+          return size_of(at - half * (Lanes::load(a + start) + Lanes::load(b + start)));
+        };
+        const Lanes at = Lanes::load(here + start);
+        const Lanes along_x =
+            lesser(off_mean(at, here - 1, here + 1), off_mean(at, here - 2, here + 2));
+        const Lanes along_z =
+            lesser(off_mean(at, above, below), off_mean(at, far_above, far_below));
+        const Lanes is_known = is_below(greater(along_x, along_z), known);
+        const Lanes step = lesser(along_x, along_z) + (one - is_known) * unknown;
+        step.store(steps + start);
+        above_floor = above_floor + is_below(least, step);
+      }
+      above_floor.store(hits);
+      if (numerics::sum_of_lanes(hits) == 0.0) continue;
+      for (Index ix = block; ix < end; ++ix) {
+        if (steps[ix] > floor) found[n++] = ix;
+      }
+    }
+    *n_found = n;
+  }
+};
+
+/// (nz, nx + kLanes) steps, and the good pixels whose step may exceed the floor.
+struct Steps {
+  Array2 plain;
+  std::vector<std::pair<Index, Index>> suspects;
+
+  Steps(const ChannelMap& map, double floor) : plain(map.grid.nz, map.grid.nx + numerics::kLanes) {
+    RowWindow window(map);
+    std::vector<Index> found(static_cast<std::size_t>(map.grid.nx));
+    for (Index iz = 0; iz < map.grid.nz; ++iz) {
+      window.move_to(iz);
+      Index n = 0;
+      numerics::run_in_lanes<RowSteps>(numerics::best_instructions(), &window, map.grid.nx, floor,
+                                       &plain(iz, 0), found.data(), &n);
+      for (Index k = 0; k < n; ++k) {
+        const Index ix = found[static_cast<std::size_t>(k)];
+        if (map.flags(iz, ix) == 0) suspects.emplace_back(iz, ix);
+      }
     }
   }
-  const auto decile =
-      around.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(around.size() - 1));
-  std::nth_element(around.begin(), decile, around.end());
-  return *decile;
+  /// Step of a pixel, -1 where there is none.
+  double of(const ChannelMap& map, Index iz, Index ix) const {
+    return plain(iz, ix) < 0.1 * kUnknown ? plain(iz, ix) : careful_step(map, iz, ix);
+  }
+};
+
+/// Whether a step exceeds `factor` times the upper decile of the steps of the 7 x 7 pixels around:
+/// a clamped corner fills a quarter of them.
+bool stands_out(const ChannelMap& map, const Steps& steps, Index iz, Index ix, double factor) {
+  constexpr Index kReach = 3;
+  const double step = steps.of(map, iz, ix);
+  Index n = 0, n_exceeded = 0;
+  for (Index jz = std::max<Index>(0, iz - kReach); jz <= std::min(map.grid.nz - 1, iz + kReach);
+       ++jz) {
+    for (Index jx = std::max<Index>(0, ix - kReach); jx <= std::min(map.grid.nx - 1, ix + kReach);
+         ++jx) {
+      const double around = steps.of(map, jz, jx);
+      n += static_cast<Index>(around >= 0.0);
+      n_exceeded += static_cast<Index>(around >= 0.0 && step > factor * around);
+    }
+  }
+  return n_exceeded > static_cast<Index>(0.9 * static_cast<double>(n - 1));
 }
 
 }  // namespace
@@ -120,17 +185,14 @@ Index flag_spikes(ChannelMap& map, Length noise, double threshold) {
   // White noise has a decile of 1.1: there the noise itself decides.
   constexpr double kMargin = 1.3;
   const double floor = threshold * noise.si();
-  const Array2 steps = all_steps(map);
-  Index found = 0;
-  for (Index iz = 0; iz < map.grid.nz; ++iz) {
-    for (Index ix = 0; ix < map.grid.nx; ++ix) {
-      if (steps(iz, ix) <= floor) continue;
-      if (steps(iz, ix) <= threshold / kMargin * local_step(steps, iz, ix)) continue;
-      map.flags(iz, ix) |= PixelFlag::spike;
-      ++found;
-    }
+  const Steps steps(map, floor);
+  std::vector<std::pair<Index, Index>> spikes;
+  for (const auto& [iz, ix] : steps.suspects) {
+    if (steps.of(map, iz, ix) <= floor) continue;
+    if (stands_out(map, steps, iz, ix, threshold / kMargin)) spikes.emplace_back(iz, ix);
   }
-  return found;
+  for (const auto& [iz, ix] : spikes) map.flags(iz, ix) |= PixelFlag::spike;
+  return static_cast<Index>(spikes.size());
 }
 
 }  // namespace manoscope::maps

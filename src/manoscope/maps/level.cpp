@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "manoscope/core/error.hpp"
-#include "manoscope/numerics/plane.hpp"
+#include "manoscope/numerics/grid_plane.hpp"
 
 namespace manoscope::maps {
 
@@ -18,16 +17,11 @@ RimPlane fit_rim_plane(const ChannelMap& map, const Flags2& rim, const std::stri
   const double scale_x = std::max(0.5 * (grid.x(grid.nx - 1) - grid.x(0)), 1e-12);
   const double scale_z = std::max({std::abs(grid.z(0)), std::abs(grid.z(grid.nz - 1)), 1e-12});
 
-  std::vector<numerics::PlanePoint> points;
-  points.reserve(static_cast<std::size_t>(rim.cast<Index>().sum()));
-  for (Index iz = 0; iz < grid.nz; ++iz) {
-    const double b = grid.z(iz) / scale_z;
-    for (Index ix = 0; ix < grid.nx; ++ix) {
-      if (rim(iz, ix) == 0 || map.flags(iz, ix) != 0) continue;
-      points.push_back({(grid.x(ix) - x_centre) / scale_x, b, map.height(iz, ix)});
-    }
-  }
-  const auto n = static_cast<Index>(points.size());
+  Array1 a(grid.nx), b(grid.nz);
+  for (Index ix = 0; ix < grid.nx; ++ix) a[ix] = (grid.x(ix) - x_centre) / scale_x;
+  for (Index iz = 0; iz < grid.nz; ++iz) b[iz] = grid.z(iz) / scale_z;
+  const numerics::GridPoints points(a, b, map.height, rim, map.flags);
+  const Index n = points.size();
   const auto fit = n >= kFewest ? numerics::fit_plane(points) : std::nullopt;
   if (!fit) {
     throw InputError(name,

@@ -12,13 +12,18 @@
 #include "manoscope/maps/channel_map.hpp"
 #include "manoscope/maps/despike.hpp"
 #include "manoscope/maps/level.hpp"
+#include "manoscope/numerics/robust.hpp"
 
 namespace manoscope::maps {
 namespace {
 
 double share(const Flags2& flags, FlagBits bit) {
   Index count = 0;
-  for (Index i = 0; i < flags.size(); ++i) count += (flags.data()[i] & bit) != 0;
+  for (Index iz = 0; iz < flags.rows(); ++iz) {
+    unsigned in_row = 0;  // narrower than Index: more of them side by side
+    for (Index ix = 0; ix < flags.cols(); ++ix) in_row += (flags(iz, ix) & bit) != 0;
+    count += in_row;
+  }
   return static_cast<double>(count) / static_cast<double>(flags.size());
 }
 
@@ -74,17 +79,15 @@ void measure_crest(const LeveledMap& map, const ChannelFrame& frame, ReducedMap&
       std::sqrt(pixel * pixel * std::min(1.0, shared * gain) + map.plane.covariance(0, 0));
 }
 
-/// Distance from the channel at which its rim begins: the larger of 3 pixels and 2 % of the width,
-/// but no more than half the rim that the map shows on its widest side.
-Length auto_margin(const ChannelGrid& grid, const ChannelFrame& frame) {
+}  // namespace
+
+Length auto_rim_margin(const ChannelGrid& grid, const ChannelFrame& frame) {
   const double half = 0.5 * frame.width.si();
   const double widest = std::max({-grid.x(0), grid.x(grid.nx - 1) - frame.length.si(),
                                   -grid.z(0) - half, grid.z(grid.nz - 1) - half});
   const Length wanted = std::max(3.0 * std::max(grid.pitch_x, grid.pitch_z), 0.02 * frame.width);
   return std::min(wanted, Length::from_si(0.5 * std::max(0.0, widest)));
 }
-
-}  // namespace
 
 void ReduceOptions::validate() const {
   if (!(spike_threshold >= 3.0)) {
@@ -97,16 +100,18 @@ void ReduceOptions::validate() const {
   if (shift_uncertainty && *shift_uncertainty < Length{}) {
     throw InputError("--shift-uncertainty", "is negative", "Give a length of 0 or more");
   }
+  if (level_order != 1 && level_order != 2) {
+    throw InputError("--level-order", fmt::format("is {}", level_order), "Give 1 or 2");
+  }
   width.validate();
 }
 
-LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame,
-                     std::optional<Length> height_noise, const std::string& name,
-                     const ReduceOptions& options) {
+LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame, const MapKnowledge& known,
+                     const std::string& name, const ReduceOptions& options) {
   options.validate();
   ChannelMap work = to_channel_frame(map, frame);
-  const Length margin = options.rim_margin.value_or(auto_margin(work.grid, frame));
-  const Flags2 rim = rim_mask(work.grid, frame.length, frame.width, margin);
+  const Length margin = options.rim_margin.value_or(auto_rim_margin(work.grid, frame));
+  const Flags2 rim = rim_mask(work.grid, frame.length, frame.width, margin, known.placement);
 
   RimPlane plane = fit_rim_plane(work, rim, name);
   subtract_plane(work, plane);
@@ -116,35 +121,115 @@ LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame,
   condition.tilt_z = plane.tilt_z;
   condition.missing = share(map.flags(), PixelFlag::no_data);
   condition.noise = measure_noise(work, rim);
-  const Length noise = height_noise.value_or(condition.noise.sigma);
+  condition.bend = fit_rim_bend(work, rim, condition.noise.sigma, frame.length);
+  PixelNoise beyond_bend = condition.noise;
+  const double bend_height = condition.bend.coefficient.tail(3).cwiseAbs().maxCoeff();
+  const double bend_doubt = std::sqrt(condition.bend.covariance.diagonal().tail(3).maxCoeff());
+  constexpr double kSigmas = 4.0;
+  if (options.level_order == 2) {
+    subtract_bend(work, condition.bend);
+    beyond_bend = condition.noise = measure_noise(work, rim);
+  } else if (bend_height > kSigmas * bend_doubt) {
+    // Seen from the plane a bend looks like noise of long reach.
+    ChannelMap flat = work;
+    subtract_bend(flat, condition.bend);
+    beyond_bend = measure_noise(flat, rim);
+  }
+  condition.placement = known.placement;
+  const Length noise = known.height_noise.value_or(condition.noise.sigma);
   // A noise-free map still has round-off; a picometre keeps the threshold above it.
   const Length spike_noise = std::max({noise, condition.noise.sigma, 1e-3 * nm});
   const Index spikes = flag_spikes(work, spike_noise, options.spike_threshold);
   condition.spikes = static_cast<double>(spikes) / static_cast<double>(work.flags.size());
+  if (options.fringe_order) {
+    condition.fringe = mend_fringe_patches(work, spike_noise, known.wavelength);
+  }
 
   const double shared = condition.noise.length_x * condition.noise.length_z;
   const double scale = plane.sigma > Length{} ? noise / plane.sigma : 0.0;
   plane.covariance *= shared * scale * scale;
+  const double shared_beyond = beyond_bend.length_x * beyond_bend.length_z;
+  const double bend_scale =
+      condition.bend.sigma > Length{} ? beyond_bend.sigma / condition.bend.sigma : 0.0;
+  condition.bend.covariance *= shared_beyond * bend_scale * bend_scale;
+  condition.bend.at_middle_uncertainty =
+      std::sqrt(shared_beyond) * bend_scale * condition.bend.at_middle_uncertainty;
   DeflectionMap deflection(work.grid, std::move(work.height), std::move(work.flags), noise,
                            condition.noise.length_x, condition.noise.length_z);
   return {std::move(deflection), plane, std::move(condition)};
 }
 
-ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame,
-                      std::optional<Length> height_noise, const std::string& name,
-                      const ReduceOptions& options) {
-  const LeveledMap leveled = level_map(map, frame, height_noise, name, options);
+ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const MapKnowledge& known,
+                      const std::string& name, const ReduceOptions& options) {
+  const LeveledMap leveled = level_map(map, frame, known, name, options);
   ReducedMap result;
+  const RimBend* bend = options.level_order == 2 ? &leveled.condition.bend : nullptr;
   result.profile = width_average(leveled.deflection, leveled.plane, frame.length, frame.width, name,
-                                 options.width);
+                                 options.width, known.placement, bend);
   result.condition = leveled.condition;
+  result.condition.centre = find_centre_line(leveled.deflection, frame.length, frame.width);
   const Length shift = options.shift_uncertainty.value_or(leveled.deflection.grid().pitch_x *
                                                           (1.0 / std::sqrt(12.0)));
+  result.condition.shift.uncertainty = shift;
   constexpr Index kReach = 4;  // columns to either side: noise of the slope well below its size
   result.profile.uncertainty.modes.push_back({fmt::format("shift of {}", name), "registration",
                                               slope_along(result.profile, kReach) * shift.si()});
   measure_crest(leveled, frame, result);
   return result;
+}
+
+Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n_hydrostatic,
+                           Length length, Length pitch_z) {
+  constexpr double kPixels = 0.3, kSigmas = 4.0;
+  Placements placements;
+  placements.own.resize(reduced.size());
+  std::vector<double> offsets, slopes, offset_doubts, slope_doubts;
+  for (std::size_t i = 0; i < n_hydrostatic; ++i) {
+    const auto& line = reduced[i].condition.centre;
+    if (!line) continue;
+    offsets.push_back(line->offset.si());
+    slopes.push_back(line->slope);
+    offset_doubts.push_back(line->offset_uncertainty.si());
+    slope_doubts.push_back(line->slope_uncertainty);
+  }
+  if (offsets.empty()) return placements;
+  const CentreLine common{Length::from_si(numerics::median(offsets)), numerics::median(slopes),
+                          Length::from_si(numerics::median(offset_doubts)),
+                          numerics::median(slope_doubts)};
+  placements.common = common;
+  for (std::size_t i = 0; i < reduced.size(); ++i) {
+    if (!reduced[i].condition.centre) continue;
+    CentreLine line = *reduced[i].condition.centre;
+    line.offset -= common.offset;
+    line.slope -= common.slope;
+    const double doubt = line.offset_uncertainty.si() + 0.5 * length.si() * line.slope_uncertainty;
+    if (line.farthest(length.si()) > std::max(kPixels * pitch_z.si(), kSigmas * doubt)) {
+      placements.own[i] = line;
+    }
+  }
+  return placements;
+}
+
+std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
+                                      std::vector<ReducedMap>& flow, Length length, Length width,
+                                      const ReduceOptions& options) {
+  if (!options.registration || options.shift_uncertainty) return std::nullopt;
+  const auto profiles = [](const std::vector<ReducedMap>& maps) {
+    std::vector<const Profile*> found;
+    for (const ReducedMap& map : maps) found.push_back(&map.profile);
+    return found;
+  };
+  const Registration found =
+      register_profiles(profiles(hydrostatic), profiles(flow), length, width);
+  const auto move = [](ReducedMap& map, const std::optional<MapShift>& shift) {
+    const Length assumed = map.condition.shift.uncertainty;
+    if (!shift || shift->uncertainty >= assumed) return;
+    move_profile(map.profile, *shift, map.condition.name, assumed);
+    map.condition.shift = *shift;
+  };
+  for (std::size_t i = 0; i < hydrostatic.size(); ++i) move(hydrostatic[i], found.hydrostatic[i]);
+  for (std::size_t i = 0; i < flow.size(); ++i) move(flow[i], found.flow[i]);
+  return found.offset;
 }
 
 HeightMap subtract_reference(const HeightMap& map, const HeightMap& reference,

@@ -7,7 +7,11 @@
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/height_map.hpp"
 #include "manoscope/core/profile.hpp"
+#include "manoscope/maps/centre_line.hpp"
+#include "manoscope/maps/fringe_order.hpp"
 #include "manoscope/maps/noise.hpp"
+#include "manoscope/maps/registration.hpp"
+#include "manoscope/maps/rim_bend.hpp"
 #include "manoscope/maps/width_average.hpp"
 
 namespace manoscope::maps {
@@ -19,6 +23,14 @@ struct ReduceOptions {
   /// Standard uncertainty of each map's own position along the flow. Auto: 0.29 pixel, a shift
   /// anywhere within half a pixel, which is what unregistered maps of one mount show.
   std::optional<Length> shift_uncertainty;
+  /// Find each map's position from the wall's own ends (register_profiles()); off where a
+  /// shift_uncertainty is stated.
+  bool registration = true;
+  /// Order of the surface through the rim that zeta counts from: 1, a plane; 2 where the frame
+  /// bends from map to map.
+  int level_order = 1;
+  /// Mend patches of a false fringe order (mend_fringe_patches()).
+  bool fringe_order = true;
   WidthAverageOptions width;
 
   template <class Visitor>
@@ -27,11 +39,20 @@ struct ReduceOptions {
     visit("rim-margin", rim_margin, "distance from the channel at which the rigid rim begins");
     visit("shift-uncertainty", shift_uncertainty,
           "standard uncertainty of each map's position along the flow");
+    visit("registration", registration,
+          "shift each map along the flow until the ends of its wall lie where they should");
+    visit("level-order", level_order,
+          "order of the surface through the rigid rim: 1, a plane; 2 if the frame bends");
+    visit("fringe-order", fringe_order, "find and mend patches of a false fringe order");
     width.describe(visit);
   }
   /// @throws InputError naming the option out of range.
   void validate() const;
 };
+
+/// Distance from the channel at which its rim begins: the larger of 3 pixels and 2 % of the width,
+/// but no more than half the rim that the map shows on its widest side.
+Length auto_rim_margin(const ChannelGrid& grid, const ChannelFrame& frame);
 
 /// What a map was like: for the report, and for eyes that look for trouble.
 struct MapCondition {
@@ -40,6 +61,19 @@ struct MapCondition {
   PixelNoise noise;                   ///< as measured on the rim
   double missing = 0.0;               ///< share of pixels without data
   double spikes = 0.0;                ///< share of pixels flagged as spikes
+  /// How far the wall had moved along the flow, taken back, and what is left of doubt about it.
+  MapShift shift{};
+  FringePatches fringe;
+  RimBend bend;  ///< of the rim beyond its plane, subtracted only with level_order = 2
+  std::optional<CentreLine> centre;  ///< of the wall, against the frame's axis; if it shows
+  CentreLine placement;              ///< what of it was taken back
+};
+
+/// What is known of a map besides its heights.
+struct MapKnowledge {
+  std::optional<Length> height_noise{};  ///< standard deviation of one pixel; else from the rim
+  std::optional<Length> wavelength{};    ///< of the interferometer
+  CentreLine placement{};                ///< where the wall's middle runs in this map
 };
 
 /// One map reduced to its profile.
@@ -59,19 +93,39 @@ struct LeveledMap {
 
 /// Height map -> deflection map from the plane of the rigid rim.
 ///
-/// @param height_noise  standard deviation of one pixel if known; else it is measured on the rim.
 /// @throws InputError naming the map, e.g. where it shows no rigid rim.
-LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame,
-                     std::optional<Length> height_noise, const std::string& name,
-                     const ReduceOptions& options = {});
+LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame, const MapKnowledge& known,
+                     const std::string& name, const ReduceOptions& options = {});
 
 /// Height map -> width-averaged profile zeta(x), with noise, leveling and position errors.
 ///
 /// The position error is a shared mode ("shift of NAME", source "registration") with effect
-/// dzeta/dx times `shift_uncertainty`.
-ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame,
-                      std::optional<Length> height_noise, const std::string& name,
-                      const ReduceOptions& options = {});
+/// dzeta/dx times `shift_uncertainty`, until register_maps() knows better.
+ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const MapKnowledge& known,
+                      const std::string& name, const ReduceOptions& options = {});
+
+/// Where the walls of maps lie across the flow and at which angle.
+struct Placements {
+  /// Median over the hydrostatic maps that show it: what belongs to the frame.
+  std::optional<CentreLine> common;
+  /// One a map, against the common line: zero where the wall lies as in the others, or does not
+  /// show.
+  std::vector<CentreLine> own;
+};
+
+/// A map counts as moved if its wall's middle lies farther than 0.3 pixels from the others'
+/// anywhere and by more than four standard uncertainties. A width average loses the square of the
+/// shift only.
+Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n_hydrostatic,
+                           Length length, Length pitch_z);
+
+/// Finds the shift of every map by register_profiles() and takes it back, with all that
+/// move_profile() says. A map whose shift is not found, or less well than it was supposed to be
+/// known, stays as it is. Does nothing if the options say so.
+/// @return where the middle of the wall lies against that of the frame, if the maps tell.
+std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
+                                      std::vector<ReducedMap>& flow, Length length, Length width,
+                                      const ReduceOptions& options);
 
 /// The map minus the instrument's own flat reference (a map of a flat mirror on the same pixels).
 ///

@@ -52,7 +52,8 @@ TEST(ReduceMap, StatesTheErrorOfItsProfileTruly) {
     const HeightMap map =
         test_support::synthetic_map(camera(), plain_frame(), kBulge, errors, stream);
     const ReducedMap reduced =
-        reduce_map(map, plain_frame(), trial % 2 == 0 ? std::nullopt : std::optional(kNoise), "m");
+        reduce_map(map, plain_frame(),
+                   trial % 2 == 0 ? MapKnowledge{} : MapKnowledge{.height_noise = kNoise}, "m");
     const Profile& profile = reduced.profile;
     const Array1 sigma = profile.uncertainty.standard();
     ASSERT_EQ(profile.x.size(), 486);  // the first at 0.015 mm, steps of 31.8 um
@@ -106,8 +107,9 @@ TEST(ReduceMap, GivesTheSameProfileInEveryOrientation) {
       MapErrors errors;
       errors.tilt_columns = 1e-4;
       RandomStream stream(61, "unused");
-      const ReducedMap reduced = reduce_map(
-          test_support::synthetic_map(grid, frame, kBulge, errors, stream), frame, kNoise, "m");
+      const ReducedMap reduced =
+          reduce_map(test_support::synthetic_map(grid, frame, kBulge, errors, stream), frame,
+                     {.height_noise = kNoise}, "m");
       EXPECT_EQ(reduced.condition.spikes, 0.0);
       if (first.size() == 0) first = reduced.profile.zeta;
       ASSERT_EQ(reduced.profile.zeta.size(), first.size());
@@ -127,7 +129,7 @@ TEST(ReduceMap, MeasuresTheCrestNotTheMeanAroundIt) {
     RandomStream stream(61, "unused");
     const ReducedMap reduced =
         reduce_map(test_support::synthetic_map(grid, plain_frame(), kBulge, errors, stream),
-                   plain_frame(), kNoise, "m");
+                   plain_frame(), {.height_noise = kNoise}, "m");
     const double truth = kBulge(0.5 * 15.5e-3, 0.0);
     // No noise in the map: what is left is the curve's own, a small part of the stated noise.
     EXPECT_NEAR(reduced.crest, truth, 0.5 * reduced.crest_uncertainty) << coarse;
@@ -140,7 +142,8 @@ TEST(ReduceMap, GivesNoCrestWhereTheMiddleHoldsNoData) {
   const HeightMap whole = test_support::synthetic_map(camera(), plain_frame(), kBulge, {}, stream);
   Array2 height = whole.height();
   height.block(0, 226, 96, 60).setConstant(std::numeric_limits<double>::quiet_NaN());
-  const ReducedMap reduced = reduce_map({camera(), height}, plain_frame(), kNoise, "m");
+  const ReducedMap reduced =
+      reduce_map({camera(), height}, plain_frame(), {.height_noise = kNoise}, "m");
   EXPECT_TRUE(std::isnan(reduced.crest));
   EXPECT_TRUE(std::isnan(reduced.crest_uncertainty));
   EXPECT_EQ((reduced.profile.flags != 0).count(), 60);
@@ -152,7 +155,7 @@ TEST(ReduceMap, GivesTheShiftModeTheSlopeOfTheProfile) {
   options.shift_uncertainty = 10.0 * um;
   const ReducedMap reduced =
       reduce_map(test_support::synthetic_map(camera(), plain_frame(), kBulge, {}, stream),
-                 plain_frame(), kNoise, "h07.gsf", options);
+                 plain_frame(), {.height_noise = kNoise}, "h07.gsf", options);
   const ErrorMode& mode = reduced.profile.uncertainty.modes.back();
   EXPECT_EQ(mode.variable, "shift of h07.gsf");
   EXPECT_EQ(mode.source, "registration");
@@ -230,11 +233,13 @@ TEST(SubtractReference, RemovesTheInstrumentsOwnCurvature) {
   const HeightMap map = test_support::synthetic_map(camera(), plain_frame(), both, tilt, stream);
   const HeightMap mirror = test_support::synthetic_map(camera(), plain_frame(), curved, {}, stream);
   const HeightMap flat = test_support::synthetic_map(camera(), plain_frame(), kBulge, {}, stream);
-  const Array1 truth = reduce_map(flat, plain_frame(), kNoise, "flat").profile.zeta;
+  const Array1 truth =
+      reduce_map(flat, plain_frame(), {.height_noise = kNoise}, "flat").profile.zeta;
   const Array1 mended =
-      reduce_map(subtract_reference(map, mirror, "m"), plain_frame(), kNoise, "m").profile.zeta;
+      reduce_map(subtract_reference(map, mirror, "m"), plain_frame(), {.height_noise = kNoise}, "m")
+          .profile.zeta;
   EXPECT_LT((mended - truth).abs().maxCoeff(), 1e-14);  // round-off
-  const Array1 raw = reduce_map(map, plain_frame(), kNoise, "m").profile.zeta;
+  const Array1 raw = reduce_map(map, plain_frame(), {.height_noise = kNoise}, "m").profile.zeta;
   EXPECT_GT((raw - truth).abs().maxCoeff(), 1e-7);  // it would have mattered
 }
 

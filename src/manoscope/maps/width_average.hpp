@@ -4,7 +4,9 @@
 
 #include "manoscope/core/deflection_map.hpp"
 #include "manoscope/core/profile.hpp"
+#include "manoscope/maps/centre_line.hpp"
 #include "manoscope/maps/level.hpp"
+#include "manoscope/maps/rim_bend.hpp"
 
 namespace manoscope::maps {
 
@@ -43,8 +45,19 @@ struct WidthAverageOptions {
 /// @param plane  the plane that was subtracted; its covariance (already enlarged for correlated
 /// noise)
 ///               becomes the shared modes.
+/// @param centre  where the middle of the wall runs in this map: z counts from there.
+/// @param bend    the surface of second order that was subtracted after the plane, if one was: its
+///               covariance takes the place of the plane's.
 Profile width_average(const DeflectionMap& map, const RimPlane& plane, Length channel_length,
                       Length channel_width, const std::string& name,
-                      const WidthAverageOptions& options = {});
+                      const WidthAverageOptions& options = {}, const CentreLine& centre = {},
+                      const RimBend* bend = nullptr);
+
+/// Adds the error modes that the stations of a map share: quadrature across the width, and the
+/// rim's plane.
+/// @param measured  (n) share of the weights that pixels carry, 0 at a station that does not count
+/// @param mean_z    (n) m, sum of the pixels' weights times z
+void add_shared_modes(Profile& profile, const RimPlane& plane, const Array1& measured,
+                      const Array1& mean_z, double pitch_over_width, const std::string& name);
 
 }  // namespace manoscope::maps

@@ -76,6 +76,8 @@ void store_calibration(const calibration::ConstitutiveCurves& curves,
   const auto n = static_cast<Index>(curves.levels.size());
   m.x = curves.x;
   m.level_pressure = m.level_pressure_uncertainty = Array1(n);
+  m.level_estimate = curves.level_pressure;
+  m.level_estimate_uncertainty = curves.level_uncertainty();
   m.crest_deflection = m.crest_deflection_uncertainty = Array1(n);
   m.static_deflection = m.static_deflection_uncertainty = Array2(n, curves.x.size());
   for (Index k = 0; k < n; ++k) {
@@ -162,11 +164,16 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
 }
 
 void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& m) {
+  m.response_x = reduced.response.x;
+  m.response_z = reduced.response.z;
+  m.wall_response = reduced.response.height;
   std::vector<const maps::MapCondition*> conditions;
   for (const auto& map : reduced.hydrostatic) conditions.push_back(&map.condition);
   for (const auto& map : reduced.flow) conditions.push_back(&map.condition);
   const auto n = static_cast<Index>(conditions.size());
   m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n);
+  m.map_shift = m.map_shift_uncertainty = m.map_shift_across = m.map_rotation = Array1(n);
+  m.map_mended = m.map_rim_bend = m.map_rim_bend_uncertainty = Array1(n);
   for (Index i = 0; i < n; ++i) {
     const maps::MapCondition& condition = *conditions[static_cast<std::size_t>(i)];
     m.map.push_back(condition.name);
@@ -175,6 +182,14 @@ void store_map_conditions(const ReducedExperiment& reduced, results::Measurement
     m.map_noise[i] = condition.noise.sigma.si();
     m.map_missing[i] = condition.missing;
     m.map_spikes[i] = condition.spikes;
+    m.map_shift[i] = condition.shift.shift.si();
+    m.map_shift_uncertainty[i] = condition.shift.uncertainty.si();
+    m.map_shift_across[i] = condition.placement.offset.si();
+    m.map_rotation[i] = condition.placement.slope;
+    m.map_mended[i] = static_cast<double>(condition.fringe.mended_pixels) /
+                      static_cast<double>(reduced.grid.nx * reduced.grid.ny);
+    m.map_rim_bend[i] = condition.bend.at_middle.si();
+    m.map_rim_bend_uncertainty[i] = condition.bend.at_middle_uncertainty.si();
   }
 }
 

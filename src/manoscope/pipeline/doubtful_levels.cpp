@@ -65,6 +65,9 @@ std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& c
   }
   std::vector<Level> levels = curves.levels;
   for (Level& level : levels) level.profile = thinned(level.profile, stations);
+  // Each label against curves through the others as they were read.
+  calibration::FitCurvesOptions as_read = options;
+  as_read.joint_labels = false;
   std::vector<LevelDoubt> doubts;
   constexpr std::size_t kFewest = 4;  // what is left must still make curves
   if (levels.size() < kFewest) return doubts;
@@ -72,7 +75,7 @@ std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& c
     std::vector<Level> others = levels;
     others.erase(others.begin() + static_cast<Index>(k));
     const auto reading =
-        inversion::read_pressure(calibration::fit_curves(others, options), levels[k].profile);
+        inversion::read_pressure(calibration::fit_curves(others, as_read), levels[k].profile);
     const auto doubt = read_left_out(levels[k], reading);
     if (doubt && std::abs(doubt->pull) > kSure) doubts.push_back(*doubt);
   }

@@ -24,6 +24,7 @@ struct CleanCase {
     experiment.channel.width = 1.7 * mm;
     experiment.channel.height_uncertainty = 0.5 * um;
     experiment.instrument.height_noise = 20.0 * nm;
+    experiment.flow.resize(1);
     place.length_misfit = place.width_misfit = std::numeric_limits<double>::quiet_NaN();
     for (int k = 0; k < 3; ++k) {
       maps::ReducedMap map;
@@ -107,6 +108,7 @@ TEST(FindDoubts, OfTheGapUncertaintyNeedARun) {
   CleanCase test;
   test.experiment.channel.height_uncertainty.reset();
   expect_says(test.only(), "channel.height_uncertainty");
+  test.experiment.flow.clear();
   test.runs.clear();
   test.findings.clear();
   EXPECT_TRUE(test.doubts().empty());
@@ -140,12 +142,26 @@ TEST(FindDoubts, OfTheCalibrationNameWhatToCheck) {
   test.levels.push_back({"h3", 3000.0, 3330.0, 12.0});
   expect_says(test.only(), "Level h3: labelled 3000 Pa, but its map reads 3330 Pa");
   test.levels.clear();
-  test.experiment.hydrostatic.resize(2);
-  test.experiment.hydrostatic[1].pressure = 100.0 * Pa;  // uncertainty 0, yet not vented
-  expect_says(test.only(), "pressure uncertainty of 0");
-  test.experiment.hydrostatic.clear();
   test.curves.levels.resize(5);
   expect_says(test.only(), "Only 5 levels");
+}
+
+TEST(FindDoubts, OfLabelsTakenAsExactAreOneCauseHoweverManyLevelsDisagree) {
+  CleanCase test;
+  test.experiment.hydrostatic.resize(3);  // neither list nor instrument gives an uncertainty
+  expect_says(test.only(), "No pressure label has an uncertainty");
+  EXPECT_EQ(test.only().find("differ"), std::string::npos);
+  for (int k = 0; k < 17; ++k) {
+    test.levels.push_back({"h" + std::to_string(k), 1000.0 * k, 1000.0 * k - 12.0 - k, -9.0});
+  }
+  const std::string doubt = test.only();
+  expect_says(doubt, "the maps of 17 levels differ from their labels");
+  expect_says(doubt, "most of all h16: labelled 16000 Pa, it reads 15972 Pa");
+  for (auto& map : test.experiment.hydrostatic) map.pressure_uncertainty = Pressure{};
+  expect_says(test.only(), "stated uncertainty of 0");
+  // With an uncertainty the levels are told one by one again.
+  for (auto& map : test.experiment.hydrostatic) map.pressure_uncertainty = 10.0 * Pa;
+  EXPECT_EQ(test.doubts().size(), 17u);
 }
 
 TEST(FindDoubts, OfAWallThatMovesInwardNameTheSign) {
@@ -176,6 +192,20 @@ TEST(FindDoubts, OfTheFlowAreLoud) {
   expect_says(test.only(), "check the units");
   test.findings[0].agreement->en_number = 2.0;
   EXPECT_TRUE(test.doubts().empty());
+  // 966 Pa of 13940 Pa are far beyond small error bars at 70 mL/min, but the fluid's gain of speed
+  // from a gap of 175 + 35.5 um to 175 + 21.5 um takes 939 Pa, and QR leaves that out.
+  test.findings[0].agreement->extracted.value = 13940.0;
+  test.findings[0].agreement->resistance.value = 12974.0;
+  test.findings[0].agreement->en_number = 11.0;
+  expect_says(test.only(), "check the units");
+  test.experiment.channel.height = 175.0 * um;
+  test.experiment.fluid.density = 998.0 * kg_per_m3;
+  test.runs[0].flow_rate = 70.0 * mL_per_min;
+  test.runs[0].profile.zeta = Array1::LinSpaced(16, 38e-6, 19e-6);
+  EXPECT_TRUE(test.doubts().empty());
+  test.runs[0].flow_rate = 7.0 * mL_per_min;  // a hundredth of it
+  expect_says(test.only(), "check the units");
+  test.runs[0].flow_rate = 5.0 * mL_per_min;
   test.findings[0].agreement.reset();
   test.findings[0].no_comparison = "gap at station 3 is -1 um";
   expect_says(test.only(), "no hydraulic resistance, for the gap at station 3");

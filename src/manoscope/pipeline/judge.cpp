@@ -1,31 +1,24 @@
 #include "manoscope/pipeline/judge.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 
-#include "manoscope/core/error.hpp"
+#include "manoscope/pipeline/judged_stretch.hpp"
 
 namespace manoscope::pipeline {
 namespace {
 
-/// Linear interpolation; the end values are held beyond the ends.
-double interpolate(const Array1& x, const Array1& y, double at) {
-  const auto* const begin = x.data();
-  const auto* const above = std::upper_bound(begin, begin + x.size(), at);
-  if (above == begin) return y[0];
-  if (above == begin + x.size()) return y[y.size() - 1];
-  const Index i = above - begin - 1;
-  return y[i] + (at - x[i]) / (x[i + 1] - x[i]) * (y[i + 1] - y[i]);
-}
+constexpr double kNormal95 = 1.959964;  // quantile of the normal law
 
-const twin::RunTruth& find_truth(const twin::Truth& truth, const std::string& run) {
-  for (const twin::RunTruth& candidate : truth.runs) {
-    if (candidate.run == run) return candidate;
-  }
-  throw InputError("truth", fmt::format("holds no run \"{}\"", run),
-                   "Give the truth of the same experiment");
+Index count(const Flags1& flags) { return (flags != 0).count(); }
+
+/// A deflection against its truth; its interval is 1.96 standard uncertainties either way.
+validation::Judgement judge_deflection(const Flags1& inside, const Array1& deflection,
+                                       const Array1& uncertainty, const Array1& truth) {
+  const Array1 half = kNormal95 * uncertainty;
+  auto result = validation::judge_reading(answers(inside, deflection), deflection, uncertainty,
+                                          deflection - half, deflection + half, truth);
+  result.n_silent = count(inside) - result.n_answered;
+  return result;
 }
 
 /// Drop between the outermost answered stations of the stretch, and its error.
@@ -53,26 +46,39 @@ std::vector<RunJudgement> judge(const results::Measurement& m, const twin::Truth
     const twin::RunTruth& run = find_truth(truth, m.run[static_cast<std::size_t>(r)]);
     RunJudgement result;
     result.run = run.run;
-    result.x_start = start ? start->si() : m.test_section(r, 0);
-    result.x_end = end ? end->si() : m.test_section(r, 1);
-    std::vector<Index> stations;
-    if (!std::isnan(result.x_start) && !std::isnan(result.x_end)) {
-      for (Index ix = 0; ix < m.x.size(); ++ix) {
-        if (m.x[ix] >= result.x_start && m.x[ix] <= result.x_end) stations.push_back(ix);
-      }
-    }
-    Flags1 answered = Flags1::Zero(m.x.size());
-    Array1 expected(m.x.size());
-    for (Index ix = 0; ix < m.x.size(); ++ix) {
-      expected[ix] = interpolate(truth.x, run.pressure, m.x[ix]);
-    }
-    for (const Index ix : stations) answered[ix] = std::isnan(m.pressure(r, ix)) ? 0 : 1;
+    const auto [x_start, x_end] = judged_stretch(m, r, start, end);
+    result.x_start = x_start;
+    result.x_end = x_end;
+    const Array1 expected = interpolate(truth.x, run.pressure, m.x);
+    const Array1 pressure = m.pressure.row(r);
+    const Flags1 inside = within(m.x, x_start, x_end);
+    const Flags1 answered = answers(inside, pressure);
     result.reading =
-        validation::judge_reading(answered, m.pressure.row(r), m.pressure_uncertainty.row(r),
+        validation::judge_reading(answered, pressure, m.pressure_uncertainty.row(r),
                                   m.pressure_lower.row(r), m.pressure_upper.row(r), expected);
-    result.reading.n_silent = static_cast<Index>(stations.size()) - result.reading.n_answered;
+    result.reading.n_silent = count(inside) - result.reading.n_answered;
+    result.deflection =
+        judge_deflection(inside, m.deflection.row(r), m.deflection_uncertainty.row(r),
+                         interpolate(truth.x, run.deflection, m.x));
     judge_drop(m, r, answered, expected, result);
     results.push_back(std::move(result));
+  }
+  return results;
+}
+
+std::vector<LevelJudgement> judge_levels(const results::Measurement& m, const twin::Truth& truth,
+                                         std::optional<Length> start, std::optional<Length> end) {
+  const Flags1 inside = within(m.x, start ? start->si() : 0.0, end ? end->si() : m.channel_length);
+  std::vector<LevelJudgement> results;
+  for (Index k = 0; k < m.level_pressure.size(); ++k) {
+    for (const twin::LevelTruth& level : truth.levels) {
+      if (!(std::abs(level.label.si() - m.level_pressure[k]) < kSameLabel)) continue;
+      results.push_back(
+          {m.level_pressure[k], judge_deflection(inside, m.static_deflection.row(k),
+                                                 m.static_deflection_uncertainty.row(k),
+                                                 interpolate(truth.x, level.deflection, m.x))});
+      break;
+    }
   }
   return results;
 }

@@ -6,32 +6,23 @@
 #include <limits>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/pipeline/test_judged_run.hpp"
 
 namespace manoscope::pipeline {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Truth falls from 1000 Pa by 100 Pa a millimetre; the reading is 3 Pa too high, 5 Pa at the
-/// start.
-struct Case {
-  results::Measurement m;
-  twin::Truth truth;
-
+/// With another run in front, a calibration level that the truth knows and one that it does not.
+struct Case : test_support::JudgedRunCase {
   Case() {
-    m.x = Array1::LinSpaced(11, 0.0, 10e-3);
-    truth.x = Array1::LinSpaced(8, 0.0, 10e-3);  // other stations: a straight line all the same
-    truth.runs.push_back({"other", Array1::Zero(8), Array1::Zero(8)});
-    truth.runs.push_back({"Q5", 1000.0 - 1e5 * truth.x, Array1::Zero(8)});
-    m.run = {"Q5"};
-    m.flow_rate = Array1::Ones(1);
-    m.test_section = Array2(1, 2);
-    m.test_section << 2e-3, 8e-3;
-    m.pressure = (1003.0 - 1e5 * m.x).matrix().transpose().array();
-    m.pressure(0, 2) += 2.0;
-    m.pressure_uncertainty = Array2::Constant(1, 11, 2.0);
-    m.pressure_lower = m.pressure - 4.0;
-    m.pressure_upper = m.pressure + 4.0;
+    truth.runs.insert(truth.runs.begin(), {"other", Array1::Zero(8), Array1::Zero(8)});
+    m.channel_length = 10e-3;
+    m.level_pressure = Array1(2);
+    m.level_pressure << 999.98, 2000.0;
+    m.static_deflection = Array2::Constant(2, 11, 1e-6);
+    m.static_deflection_uncertainty = Array2::Constant(2, 11, 5e-9);
+    truth.levels.push_back({"h01.gsf", 990.0 * Pa, 1000.0 * Pa, Array1::Constant(8, 1e-6 - 5e-9)});
     m.pressure_covariance = {Matrix::Constant(11, 11, 3.0) + Matrix::Identity(11, 11)};
   }
 };
@@ -49,6 +40,31 @@ TEST(JudgeMeasurement, HoldsARunAgainstTheTruthOfItsName) {
   EXPECT_NEAR(found[0].true_drop, 600.0, 1e-9);
   EXPECT_NEAR(found[0].drop_error, 2.0, 1e-9);
   EXPECT_NEAR(found[0].drop_pull, 2.0 / std::sqrt(4.0 + 4.0 - 2.0 * 3.0), 1e-9);
+}
+
+TEST(JudgeMeasurement, HoldsDeflectionsAgainstTheirTruth) {
+  Case test;
+  test.m.deflection(0, 3) = kNan;
+  const auto found = judge(test.m, test.truth);
+  EXPECT_EQ(found[0].deflection.n_answered, 6);
+  EXPECT_EQ(found[0].deflection.n_silent, 1);
+  EXPECT_NEAR(found[0].deflection.rms, 4e-9, 1e-20);
+  EXPECT_NEAR(found[0].deflection.pull_mean, 2.0, 1e-9);
+  EXPECT_EQ(found[0].deflection.coverage, 0.0);  // 4 nm lie outside 1.96 * 2 nm
+}
+
+TEST(JudgeMeasurement, HoldsStaticCurvesAgainstTheTruthOfTheirLabel) {
+  const Case test;
+  const auto levels = judge_levels(test.m, test.truth);
+  ASSERT_EQ(levels.size(), 1u);  // the truth knows of one
+  EXPECT_EQ(levels[0].pressure, 999.98);
+  EXPECT_EQ(levels[0].deflection.n_answered, 11);
+  EXPECT_NEAR(levels[0].deflection.mean, 5e-9, 1e-20);
+  EXPECT_EQ(levels[0].deflection.coverage, 1.0);
+  EXPECT_EQ(judge_levels(test.m, test.truth, 3.5 * mm, 9.5 * mm)[0].deflection.n_answered, 6);
+  twin::Truth of_runs = test.truth;
+  of_runs.levels.clear();
+  EXPECT_TRUE(judge_levels(test.m, of_runs).empty());
 }
 
 TEST(JudgeMeasurement, JudgesTheStretchThatIsAsked) {

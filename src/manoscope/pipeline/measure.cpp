@@ -44,8 +44,11 @@ void compare_with_flow(const Experiment& experiment, const FlowRun& run, RunFind
   found.channel_resistance_drop =
       validation::channel_resistance_drop(channel, fluid, run.flow_rate, run.profile).si();
   if (!found.section) return;
-  const Length height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{});
-  found.agreement = validation::compare_drops(channel, fluid, run.flow_rate, height_uncertainty,
+  const validation::FlowUncertainty uncertainty{
+      experiment.channel.height_uncertainty.value_or(Length{}),
+      experiment.fluid.viscosity_uncertainty.value_or(Viscosity{}),
+      experiment.instrument.flow_rate_uncertainty.value_or(0.0)};
+  found.agreement = validation::compare_drops(channel, fluid, run.flow_rate, uncertainty,
                                               run.profile, found.reading, *found.section);
   found.resistance_pressure = validation::resistance_pressure(
       channel, fluid, run.flow_rate, run.profile, found.reading, *found.section);
@@ -68,8 +71,8 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
     inversion::add_end_doubt(found.reading, *found.section, channel.length, channel.width,
                              options.reading.coverage);
   }
-  found.intersections = inversion::find_intersections(curves.levels, run.profile, channel.width,
-                                                      options.intersections);
+  found.intersections = inversion::find_intersections(curves.estimated_levels(), run.profile,
+                                                      channel.width, options.intersections);
   if (found.section) {
     // At the clamped ends every profile meets every other: no reading (Ozsun et al. 2013, sec. III
     // C).
@@ -110,7 +113,7 @@ std::string place_text(const ChannelFrame& frame) {
 
 void store_provenance(const Experiment& experiment, const ReducedExperiment& reduced,
                       const MeasureOptions& options, results::Measurement& m) {
-  m.title = "Pressure inside the micro-channel of " + experiment.name;
+  m.title = title_of(experiment.name);
   m.source = fmt::format("manoscope {} ({})", program_version(), source_revision());
   m.history = "manoscope measure";
   m.experiment = experiment.text;
@@ -129,21 +132,23 @@ void store_provenance(const Experiment& experiment, const ReducedExperiment& red
   m.channel_height = experiment.channel.height.si();
   m.channel_height_uncertainty = experiment.channel.height_uncertainty.value_or(Length{}).si();
   m.viscosity = experiment.fluid.viscosity.si();
+  m.viscosity_uncertainty = experiment.fluid.viscosity_uncertainty.value_or(Viscosity{}).si();
   m.density = experiment.fluid.density.si();
   m.coverage = options.reading.coverage;
 }
 
 }  // namespace
 
+std::string title_of(const std::string& experiment_name) {
+  return "Pressure inside the micro-channel of " + experiment_name;
+}
+
 void MeasureOptions::validate() const {
   reduce.validate();
   curves.validate();
   reading.validate();
   section.validate();
-  if (intersections.window && *intersections.window <= Length{}) {
-    throw InputError("--crossing-window", fmt::format("is {:.4g} um", intersections.window->in(um)),
-                     "Give a length above 0, or auto");
-  }
+  intersections.validate();
 }
 
 results::Measurement measure(const Experiment& experiment, const MeasureOptions& options,
@@ -168,6 +173,8 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_provenance(experiment, reduced, options, measurement);
   store_calibration(curves, experiment, reduced.hydrostatic, measurement);
   store_runs(runs, findings, measurement);
+  measurement.flow_rate_uncertainty =
+      measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
   store_map_conditions(reduced, measurement);
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
                                      doubtful_levels(curves, options.curves), runs, findings);

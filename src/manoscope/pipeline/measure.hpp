@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "manoscope/calibration/fit_curves.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/experiment/experiment.hpp"
@@ -30,6 +32,9 @@ struct MeasureOptions {
   /// @throws InputError naming the first option out of range.
   void validate() const;
 };
+
+/// The title of the result of an experiment of that name.
+std::string title_of(const std::string& experiment_name);
 
 /// The whole chain: maps -> profiles -> constitutive curves -> p(x) -> agreement with the flow.
 ///

@@ -53,7 +53,7 @@ TEST(Measure, FlagsABuckledFoldInsteadOfPickingABranch) {
           (1.0 - std::exp(-x / 0.4e-3)) * (1.0 - std::exp(-(length.si() - x) / 0.4e-3));
       values[i] = taper * folding_wall(pressure(x));
     }
-    return twin::UniformCurve(length, values);
+    return twin::ChannelCurve(length, values);
   };
   test.twin.maps.clear();
   test.twin.hydrostatic_csv = "map,pressure [Pa],pressure_uncertainty [Pa]\n";

@@ -9,7 +9,10 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/parallel.hpp"
 #include "manoscope/core/provenance.hpp"
+#include "manoscope/io/map_address.hpp"
+#include "manoscope/io/read_ahead.hpp"
 #include "manoscope/io/reader.hpp"
+#include "manoscope/pipeline/file_warnings.hpp"
 
 namespace manoscope::pipeline {
 namespace {
@@ -19,25 +22,30 @@ using experiment::Experiment;
 /// A map of the experiment, the instrument's own reference subtracted where one is named.
 class MapSource {
  public:
-  explicit MapSource(const Experiment& experiment) {
+  explicit MapSource(const Experiment& experiment) : options_(reading_options(experiment)) {
     const auto& instrument = experiment.instrument;
-    if (instrument.pixel_pitch) {
-      options_.pitch_x = (*instrument.pixel_pitch)[0];
-      options_.pitch_y = (*instrument.pixel_pitch)[1];
-    }
-    options_.height_unit = instrument.height_unit;
-    options_.channel = instrument.channel;
     if (instrument.reference) reference_ = io::read_height_map(*instrument.reference, options_);
   }
-  HeightMap read(const std::filesystem::path& path) const {
-    HeightMap map = io::read_height_map(path, options_);
-    return reference_ ? maps::subtract_reference(map, *reference_, path.string()) : map;
+  HeightMap read(const std::filesystem::path& path,
+                 std::vector<std::string>* warnings = nullptr) const {
+    io::LoadedMap loaded = io::load_height_map(path, options_);
+    if (warnings != nullptr) *warnings = std::move(loaded.warnings);
+    return reference_ ? maps::subtract_reference(loaded.map, *reference_, path.string())
+                      : std::move(loaded.map);
   }
 
  private:
   io::ReadOptions options_;
   std::optional<HeightMap> reference_;
 };
+
+/// The maps of lowest and of highest pressure.
+auto extreme_levels(const Experiment& experiment) {
+  const auto& levels = experiment.hydrostatic;
+  const auto by_pressure = [](const auto& a, const auto& b) { return a.pressure < b.pressure; };
+  return std::pair(std::min_element(levels.begin(), levels.end(), by_pressure),
+                   std::max_element(levels.begin(), levels.end(), by_pressure));
+}
 
 /// One experiment, one camera: stations and the channel's place are those of the first map.
 void require_same_grid(const CameraGrid& first, const std::string& first_name,
@@ -54,10 +62,7 @@ void require_same_grid(const CameraGrid& first, const std::string& first_name,
 }  // namespace
 
 maps::FoundPlace place_channel(const Experiment& experiment) {
-  const auto& levels = experiment.hydrostatic;
-  const auto by_pressure = [](const auto& a, const auto& b) { return a.pressure < b.pressure; };
-  const auto lowest = std::min_element(levels.begin(), levels.end(), by_pressure);
-  const auto highest = std::max_element(levels.begin(), levels.end(), by_pressure);
+  const auto [lowest, highest] = extreme_levels(experiment);
   const auto& channel = experiment.channel;
   const maps::KnownPlace known{channel.length, channel.width,    channel.origin,
                                channel.flow,   channel.rotation, channel.outward};
@@ -86,28 +91,60 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   std::vector<maps::ReducedMap> reduced(files.size());
   ReducedExperiment result;
   result.frame = frame;
+  result.level_order = options.level_order;
   result.hash.resize(files.size());
+  result.file_warnings.resize(files.size());
   if (experiment.instrument.reference) {
-    result.reference_hash = sha256(read_file(*experiment.instrument.reference));
+    result.reference_hash =
+        sha256(read_file(io::map_address(*experiment.instrument.reference).file));
   }
   const std::string& first_name = files.front().second;
   result.grid = source.read(files.front().first).grid();
+  maps::MapKnowledge known;
+  known.height_noise = experiment.instrument.height_noise;
+  known.wavelength = experiment.instrument.wavelength;
+  constexpr std::size_t kAhead = 2;
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(files.size()), n_threads, [&](Index i) {
     monitor.checkpoint();
     const auto at = static_cast<std::size_t>(i);
     const auto& [path, name] = files[at];
-    result.hash[at] = sha256(read_file(path));
-    const HeightMap map = source.read(path);
+    // The next maps come from the disk while this one is reduced.
+    if (at + kAhead < files.size()) {
+      io::read_ahead(io::map_address(files[at + kAhead].first).file);
+    }
+    result.hash[at] = sha256(read_file(io::map_address(path).file));
+    const HeightMap map = source.read(path, &result.file_warnings[at]);
     require_same_grid(result.grid, first_name, map.grid(), name);
-    reduced[at] = maps::reduce_map(map, frame, experiment.instrument.height_noise, name, options);
+    reduced[at] = maps::reduce_map(map, frame, known, name, options);
     monitor.report("reducing maps",
                    static_cast<double>(++done) / static_cast<double>(files.size()));
   });
+  // Maps whose wall lies elsewhere across the flow, or askew, once more in their own place.
+  if (options.registration) {
+    const Length pitch_z = frame.along_columns() ? result.grid.pitch_y : result.grid.pitch_x;
+    const maps::Placements placements =
+        maps::find_placements(reduced, experiment.hydrostatic.size(), frame.length, pitch_z);
+    result.centre = placements.common;
+    parallel_for(static_cast<Index>(files.size()), n_threads, [&](Index i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (placements.own[at].farthest(frame.length.si()) == 0.0) return;
+      monitor.checkpoint();
+      maps::MapKnowledge placed = known;
+      placed.placement = placements.own[at];
+      reduced[at] =
+          maps::reduce_map(source.read(files[at].first), frame, placed, files[at].second, options);
+    });
+  }
+  const auto [lowest, highest] = extreme_levels(experiment);
+  result.response = maps::picture_response(source.read(lowest->map), source.read(highest->map),
+                                           frame, highest->name);
   const auto split = reduced.begin() + static_cast<Index>(experiment.hydrostatic.size());
   result.hydrostatic.assign(std::make_move_iterator(reduced.begin()),
                             std::make_move_iterator(split));
   result.flow.assign(std::make_move_iterator(split), std::make_move_iterator(reduced.end()));
+  result.offset =
+      maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width, options);
   return result;
 }
 
@@ -116,7 +153,8 @@ std::vector<calibration::Level> make_levels(const Experiment& experiment,
   std::vector<calibration::Level> levels;
   for (std::size_t k = 0; k < reduced.size(); ++k) {
     const auto& entry = experiment.hydrostatic[k];
-    levels.push_back({entry.name, entry.pressure, entry.pressure_uncertainty, reduced[k].profile});
+    levels.push_back({entry.name, entry.pressure, entry.pressure_uncertainty.value_or(Pressure{}),
+                      reduced[k].profile, entry.vented ? 0.0 : 1.0});
   }
   return levels;
 }

@@ -11,6 +11,7 @@
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/maps/reduce.hpp"
 #include "manoscope/maps/region.hpp"
+#include "manoscope/maps/response_picture.hpp"
 
 namespace manoscope::pipeline {
 
@@ -19,15 +20,23 @@ struct ReducedExperiment {
   ChannelFrame frame;
   CameraGrid grid;  ///< of every map
   std::vector<maps::ReducedMap> hydrostatic, flow;
-  std::vector<std::string> hash;  ///< SHA-256 of each map, hydrostatic first
-  std::string reference_hash;     ///< of the instrument's reference map, "" if there is none
+  std::vector<std::string> hash;                        ///< SHA-256 of each map, hydrostatic first
+  std::vector<std::vector<std::string>> file_warnings;  ///< of each map, in the same order
+  std::string reference_hash;  ///< of the instrument's reference map, "" if there is none
+  /// Where the middle of the wall lies against that of the frame, along the flow.
+  std::optional<maps::MapShift> offset;
+  /// The same across the flow, and its angle to the frame's axis: median of the hydrostatic maps
+  /// that show it.
+  std::optional<maps::CentreLine> centre;
+  maps::ResponsePicture response;  ///< highest level minus lowest
+  int level_order = 1;             ///< of the surface through the rim that was subtracted
 };
 
 /// Where the channel lies: as the experiment says, what it leaves out found from the maps of lowest
 /// and highest pressure and of the largest flow rate.
 maps::FoundPlace place_channel(const experiment::Experiment& experiment);
 
-/// Reads and reduces every map.
+/// Reads and reduces every map, and takes back the shifts between them.
 /// @throws InputError naming the first map whose pixels differ from those of the first map.
 ReducedExperiment reduce_maps(const experiment::Experiment& experiment, const ChannelFrame& frame,
                               const maps::ReduceOptions& options, int n_threads,

@@ -64,7 +64,7 @@ class TestExperiment {
     throw InternalError("the test finds no map " + name);
   }
   /// One more map of a wall that is known already, with errors of its own.
-  void add_map(const std::string& name, const twin::UniformCurve& deflection,
+  void add_map(const std::string& name, const twin::ChannelCurve& deflection,
                std::uint64_t map_index) {
     twin.maps.push_back(
         {name, name,

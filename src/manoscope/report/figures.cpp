@@ -35,7 +35,8 @@ std::vector<Figure> figures(const results::Measurement& measurement) {
   std::vector<Figure> list;
   for (const auto make :
        {&pressure_at_highest_flow, &pressure_at_lowest_flow, &pressure_of_all_runs, &flow_profiles,
-        &drop_agreement, &pressure_drop, &static_profiles, &profiles_overlaid, &crest_deflection}) {
+        &drop_agreement, &pressure_drop, &static_profiles, &profiles_overlaid, &crest_deflection,
+        &channel_place}) {
     if (auto figure = make(measurement)) list.push_back(std::move(*figure));
   }
   return list;

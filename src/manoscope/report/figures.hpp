@@ -19,6 +19,8 @@ struct Figure {
 
 // Each returns nullopt where the measurement holds nothing to show.
 
+/// The channel's rectangle over what the wall did between the lowest and the highest pressure.
+std::optional<Figure> channel_place(const results::Measurement& measurement);
 /// Fig. 1(d) of Ozsun et al. (2013): static profiles zeta(x) at each pressure.
 std::optional<Figure> static_profiles(const results::Measurement& measurement);
 /// Fig. 1(e), (f): crest deflection against pressure.

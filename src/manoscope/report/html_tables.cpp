@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/report/figure_data.hpp"
 #include "manoscope/report/html_text.hpp"
 #include "manoscope/report/number_text.hpp"
+#include "manoscope/report/wording.hpp"
 
 namespace manoscope::report {
 namespace {
@@ -23,6 +25,14 @@ std::string with_unit(double value, int digits, DisplayUnit (*unit_for)(double))
 std::string given(double length) {
   const DisplayUnit unit = length_unit(length);
   return short_number_text(length / unit.si) + " " + unit.name;
+}
+
+/// The viscosity, with its standard uncertainty where one is stated.
+std::string viscosity_text(const Measurement& m) {
+  std::string text = short_number_text(m.viscosity * 1e3) + " mPa s";
+  if (!std::isgreater(m.viscosity_uncertainty, 0.0)) return text;
+  return text + fmt::format(" (standard uncertainty {} mPa s)",
+                            number_text(m.viscosity_uncertainty * 1e3, 2));
 }
 
 std::string fact(const std::string& name, const std::string& value) {
@@ -106,9 +116,8 @@ std::string facts_list(const Measurement& m) {
       "Gap 2h<sub>0</sub>",
       fmt::format("{} {} (standard uncertainty {} {})", number_text(m.channel_height / gap.si, 5),
                   gap.name, number_text(m.channel_height_uncertainty / gap.si, 2), gap.name));
-  list += fact("Fluid",
-               fmt::format("viscosity {} mPa s, density {} kg/m³",
-                           short_number_text(m.viscosity * 1e3), short_number_text(m.density)));
+  list += fact("Fluid", fmt::format("viscosity {}, density {} kg/m³", viscosity_text(m),
+                                    short_number_text(m.density)));
   list += fact("Calibration",
                fmt::format("{}, {}", count(m.level_pressure.size(), "pressure", "pressures"),
                            range_text(m.level_pressure, pressure_unit)));
@@ -166,12 +175,9 @@ std::string runs_table(const Measurement& m) {
           "Δp<sub>e</sub>: read off the wall. QR: flow rate times hydraulic resistance of the "
           "measured gap by the paper's eq. (4), which leaves out inertia and developing flow: at "
           "high "
-          "flow rate a disagreement may be the formula's. U(QR) holds gap and deflection; flow "
-          "rate and "
-          "viscosity count as exact. They agree where E<sub>n</sub> ≤ 1. Read: share of the test "
-          "section's "
-          "stations where the wall gives an answer.",
-          kExpansion),
+          "flow rate a disagreement may be the formula's. {} They agree where E<sub>n</sub> ≤ 1. "
+          "Read: share of the test section's stations where the wall gives an answer.",
+          kExpansion, resistance_uncertainty_text(m)),
       head, body);
 }
 
@@ -219,14 +225,29 @@ std::string maps_table(const Measurement& m) {
             cell(number_text(1e3 * m.map_tilt_z(map), 3)) +
             cell(number_text(m.map_noise(map) / noise.si, 3)) +
             cell(escape_html(percent_text(m.map_missing(map)))) +
-            cell(escape_html(percent_text(m.map_spikes(map)))) + "</tr>\n";
+            cell(escape_html(percent_text(m.map_spikes(map)))) +
+            cell(escape_html(percent_text(m.map_mended(map)))) +
+            cell(number_text(1e6 * m.map_shift(map), 2)) +
+            cell(number_text(1e6 * m.map_shift_uncertainty(map), 2)) +
+            cell(number_text(1e6 * m.map_shift_across(map), 2)) +
+            cell(number_text(m.map_rotation(map) * 180.0 / std::numbers::pi, 2)) +
+            cell(number_text(1e9 * m.map_rim_bend(map), 2)) +
+            cell(number_text(1e9 * m.map_rim_bend_uncertainty(map), 1)) + "</tr>\n";
   }
   return table(
       "What each map was like, seen on the rigid rim: slope of its plane along and across the "
-      "flow, standard deviation of one pixel, and pixels left out.",
+      "flow, standard deviation of one pixel; pixels left out, and pixels of a false fringe order, "
+      "mended. The shift along the flow that was found at the ends of the wall and taken back, "
+      "with "
+      "its standard uncertainty; shift across and rotation found at its sides and taken back where "
+      "they count; bend of the rim beyond its plane, at mid-channel, with its standard "
+      "uncertainty.",
       column_head("Map") + column_head("Tilt along (µm/mm)") + column_head("Tilt across (µm/mm)") +
           column_head(fmt::format("Noise ({})", noise.name)) + column_head("Missing") +
-          column_head("Spikes"),
+          column_head("Spikes") + column_head("Mended") + column_head("Shift (µm)") +
+          column_head("u(shift) (µm)") + column_head("Shift across (µm)") +
+          column_head("Rotation (°)") + column_head("Bend of the rim (nm)") +
+          column_head("u(bend) (nm)"),
       body, m.map.size() > 14);
 }
 

@@ -4,35 +4,34 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "manoscope/core/colour_map.hpp"
 #include "manoscope/core/error.hpp"
 
 namespace manoscope::report {
+namespace {
+
+std::string hexadecimal(const Rgb& colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]);
+}
+
+}  // namespace
+
+std::string viridis_palette() {
+  constexpr int kSteps = 16;  // as many as its table has
+  std::string colours;
+  for (int i = 0; i <= kSteps; ++i) {
+    colours += fmt::format("{}{} '{}'", i == 0 ? "" : ", ", i,
+                           hexadecimal(viridis(static_cast<double>(i) / kSteps)));
+  }
+  return "set palette defined (" + colours + ")";
+}
 
 std::string ordered_colour(Index index, Index n) {
-  // viridis at 0, 1/8, ... 1
-  constexpr std::array<std::array<int, 3>, 9> kViridis{{{68, 1, 84},
-                                                        {71, 45, 123},
-                                                        {59, 82, 139},
-                                                        {44, 114, 142},
-                                                        {33, 145, 140},
-                                                        {40, 174, 128},
-                                                        {94, 201, 98},
-                                                        {173, 220, 48},
-                                                        {253, 231, 37}}};
-  constexpr double kEnd = 0.72;
-  const double place =
-      n < 2 ? 0.0 : 8.0 * kEnd * static_cast<double>(index) / static_cast<double>(n - 1);
-  const auto low = std::min<std::size_t>(static_cast<std::size_t>(place), 7);
-  const double t = place - static_cast<double>(low);
-  std::string colour = "#";
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double value = (1.0 - t) * kViridis[low][c] + t * kViridis[low + 1][c];
-    colour += fmt::format("{:02x}", static_cast<int>(std::lround(value)));
-  }
-  return colour;
+  constexpr double kEnd = 0.72;  // the palest colours do not show on white
+  const double place = n < 2 ? 0.0 : kEnd * static_cast<double>(index) / static_cast<double>(n - 1);
+  return hexadecimal(viridis(place));
 }
 
 PlotScript& PlotScript::set(const std::string& line) {
@@ -62,6 +61,22 @@ std::string PlotScript::add_data(std::initializer_list<Array1> columns) {
   if (rows.empty()) return {};
   std::string name = fmt::format("$data{}", n_data_++);
   text_ += name + " << END\n" + rows + "END\n";
+  return name;
+}
+
+std::string PlotScript::add_grid(const Array1& x, const Array1& y, const Array2& values) {
+  MANO_ASSERT(values.rows() == y.size() && values.cols() == x.size());
+  std::string name = fmt::format("$data{}", n_data_++);
+  text_ += name + " << END\n";
+  for (Index iy = 0; iy < y.size(); ++iy) {
+    for (Index ix = 0; ix < x.size(); ++ix) {
+      const double value = values(iy, ix);
+      text_ += plain(x[ix]) + ' ' + plain(y[iy]) + ' ' +
+               (std::isfinite(value) ? plain(value) : std::string("NaN")) + '\n';
+    }
+    text_ += '\n';
+  }
+  text_ += "END\n";
   return name;
 }
 

@@ -21,6 +21,9 @@ inline constexpr const char* kPale = "#b4b4b4";
 /// yellow end, hard to see on white, is left out.
 std::string ordered_colour(Index index, Index n);
 
+/// `set palette ...` with the whole of viridis.
+std::string viridis_palette();
+
 /// One gnuplot script in the making: settings, data blocks and one `plot` command.
 ///
 /// It holds numbers and our own words only, never a text of the user.
@@ -31,6 +34,10 @@ class PlotScript {
   /// Adds columns of equal length as a data block; a row with a NaN breaks the line there.
   /// @return its name, or "" if no row is whole.
   std::string add_data(std::initializer_list<Array1> columns);
+  /// Adds a grid of values as a data block of x, y, value; NaN stays.
+  /// @param values  (y.size(), x.size())
+  /// @return its name.
+  std::string add_grid(const Array1& x, const Array1& y, const Array2& values);
   /// Adds an element to the next plot command, e.g. draw(name, "using 1:2 with lines"); an empty
   /// name draws nothing.
   PlotScript& draw(const std::string& data, const std::string& how);

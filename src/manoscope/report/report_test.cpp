@@ -11,6 +11,7 @@
 #include "manoscope/report/figures.hpp"
 #include "manoscope/report/gnuplot.hpp"
 #include "manoscope/report/html_text.hpp"
+#include "manoscope/report/wording.hpp"
 #include "tests/support/changed_environment.hpp"
 #include "tests/support/example_measurement.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -69,7 +70,7 @@ class Check(html.parser.HTMLParser):
         super().__init__(); self.open = []; self.ids = set()
     def handle_starttag(self, tag, attrs):
         for name, value in attrs:
-            if name in ("src", "href", "xlink:href", "data", "action") and not value.startswith("#"):
+            if name in ("src", "href", "xlink:href", "data", "action") and not value.startswith(("#", "data:image/png;base64,")):
                 sys.exit(f"loads {value}")
             if name == "id":
                 if value in self.ids: sys.exit(f"id {value} twice")
@@ -96,10 +97,10 @@ TEST(Report, HoldsAFigureForEachOfThePaper) {
   if (gnuplot_is_missing()) GTEST_SKIP() << "gnuplot is not installed";
   const auto files = make_report(example_measurement());
   const auto names = names_of(files);
-  for (const char* name :
-       {"fig1d_static_profiles", "fig1ef_crest_deflection", "fig2a_pressure_drop",
-        "fig2b_flow_profiles", "fig3a_profiles_overlaid", "fig3b_pressure_lowest_flow",
-        "fig3c_pressure_highest_flow", "fig4_drop_agreement", "pressure_all_runs"}) {
+  for (const char* name : {"fig1d_static_profiles", "fig1ef_crest_deflection",
+                           "fig2a_pressure_drop", "fig2b_flow_profiles", "fig3a_profiles_overlaid",
+                           "fig3b_pressure_lowest_flow", "fig3c_pressure_highest_flow",
+                           "fig4_drop_agreement", "pressure_all_runs", "channel_place"}) {
     EXPECT_TRUE(names.contains(std::string("figures/") + name + ".svg")) << name;
   }
   EXPECT_TRUE(names.contains("report.html"));
@@ -215,6 +216,22 @@ TEST(Report, ShowsADropWithItsExpandedUncertainty) {
   const std::string page = page_of(make_report(measurement));
   EXPECT_NE(page.find("<td>14.23 ± 0.12</td>"), std::string::npos);
   EXPECT_NE(page.find("disagrees"), std::string::npos);
+}
+
+TEST(ResistanceUncertaintyText, SaysWhatCountsAsExact) {
+  results::Measurement m;
+  m.flow_rate_uncertainty = Array1::Zero(2);
+  const auto says = [&](const std::string& part) {
+    EXPECT_NE(resistance_uncertainty_text(m).find(part), std::string::npos)
+        << resistance_uncertainty_text(m);
+  };
+  says("flow rate and viscosity count as exact");
+  m.viscosity_uncertainty = 1e-5;
+  says("viscosity; the flow rate counts as exact");
+  m.flow_rate_uncertainty[0] = 1e-9;  // a run at rest has 0
+  EXPECT_EQ(resistance_uncertainty_text(m).find("exact"), std::string::npos);
+  m.viscosity_uncertainty = 0.0;
+  says("flow rate; the viscosity counts as exact");
 }
 
 TEST(EscapeHtml, LeavesNoMarkupAndNoControlCharacters) {

@@ -25,7 +25,7 @@ struct Measurement {
   // Scalars.
   double channel_length = 0.0, channel_width = 0.0, channel_height = 0.0;  ///< m
   double channel_height_uncertainty = 0.0;                                 ///< m, standard
-  double viscosity = 0.0;                                                  ///< Pa s
+  double viscosity = 0.0, viscosity_uncertainty = 0.0;                     ///< Pa s, standard
   double density = 0.0;                                                    ///< kg m-3
   double coverage = 0.95;  ///< probability content of the intervals
 
@@ -34,6 +34,8 @@ struct Measurement {
   // Calibration.
   Array1 level_pressure;                 ///< (n_l) Pa, as applied (mean of repeats)
   Array1 level_pressure_uncertainty;     ///< (n_l) Pa, standard
+  Array1 level_estimate;                 ///< (n_l) Pa, what all labels together say of it
+  Array1 level_estimate_uncertainty;     ///< (n_l) Pa, standard
   Array2 static_deflection;              ///< (n_l, n_x) m
   Array2 static_deflection_uncertainty;  ///< (n_l, n_x) m
   Array1 crest_deflection;               ///< (n_l) m, zeta_p: mid-channel, on the centre line
@@ -41,7 +43,7 @@ struct Measurement {
 
   // Reading.
   std::vector<std::string> run;               ///< (n_r)
-  Array1 flow_rate;                           ///< (n_r) m3 s-1
+  Array1 flow_rate, flow_rate_uncertainty;    ///< (n_r) m3 s-1, standard; 0 = taken as exact
   Array2 deflection, deflection_uncertainty;  ///< (n_r, n_x) m
   Array2 pressure, pressure_uncertainty;      ///< (n_r, n_x) Pa
   Array2 pressure_lower, pressure_upper;      ///< (n_r, n_x) Pa
@@ -68,10 +70,20 @@ struct Measurement {
   Array1 en_number;                        ///< (n_r) |dp_e - QR| / U of the difference
 
   // What each map was like.
-  std::vector<std::string> map;    ///< (n_m) file names
-  Array1 map_tilt_x, map_tilt_z;   ///< (n_m) slope of the rim's plane, m/m
-  Array1 map_noise;                ///< (n_m) m, standard deviation of one pixel on the rim
-  Array1 map_missing, map_spikes;  ///< (n_m) fraction of the pixels
+  std::vector<std::string> map;             ///< (n_m) file names
+  Array1 map_tilt_x, map_tilt_z;            ///< (n_m) slope of the rim's plane, m/m
+  Array1 map_noise;                         ///< (n_m) m, standard deviation of one pixel on the rim
+  Array1 map_missing, map_spikes;           ///< (n_m) fraction of the pixels
+  Array1 map_shift, map_shift_uncertainty;  ///< (n_m) m, along the flow, taken back
+  Array1 map_shift_across;                  ///< (n_m) m, taken back
+  Array1 map_rotation;                      ///< (n_m) rad, taken back
+  Array1 map_mended;                        ///< (n_m) fraction of pixels of a false fringe order
+  Array1 map_rim_bend, map_rim_bend_uncertainty;  ///< (n_m) m, at mid-channel
+
+  // What the wall did between the lowest and the highest pressure: where the channel was taken to
+  // lie. Empty if the result holds no such picture.
+  Array1 response_x, response_z;  ///< m, in the channel's frame
+  Array2 wall_response;           ///< (n_z, n_x) m
 };
 
 }  // namespace manoscope::results

@@ -12,6 +12,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
+#include "manoscope/core/provenance.hpp"
 #include "manoscope/io/netcdf_handle.hpp"
 #include "manoscope/results/schema.hpp"
 
@@ -294,8 +295,9 @@ void write_netcdf(const std::filesystem::path& path, const std::filesystem::path
   file.close();
 }
 
-Measurement read_netcdf(const std::filesystem::path& path) {
-  const auto file = NetcdfFile::open(path);
+namespace {
+
+Measurement read_contents(const NetcdfFile& file, const std::filesystem::path& path) {
   Measurement measurement;
   for (const GlobalText& text : global_texts()) {
     const auto found = file.text_attribute(NetcdfFile::kGlobal, std::string(text.name));
@@ -324,6 +326,38 @@ Measurement read_netcdf(const std::filesystem::path& path) {
     }
   }
   return measurement;
+}
+
+/// The version in a `source` "manoscope 0.1.0 (revision)", or "" if it is not of that form.
+std::string version_in(const std::string& source) {
+  constexpr std::string_view kProgram = "manoscope ";
+  return source.rfind(kProgram, 0) == 0 ? source.substr(kProgram.size()) : std::string();
+}
+
+}  // namespace
+
+Measurement read_netcdf(const std::filesystem::path& path) {
+  const auto file = NetcdfFile::open(path);
+  try {
+    return read_contents(file, path);
+  } catch (const InputError& error) {
+    const std::string here = fmt::format("{} ({})", program_version(), source_revision());
+    const std::string there =
+        version_in(file.text_attribute(NetcdfFile::kGlobal, "source").value_or(""));
+    if (there.empty() || there == here) throw;
+    throw InputError(path.string(),
+                     fmt::format("written by another version of manoscope ({}, this is {}): it {}",
+                                 there, here, error.found()),
+                     "Measure again with this version");
+  }
+}
+
+std::optional<std::string> title_in(const std::filesystem::path& path) {
+  try {
+    return NetcdfFile::open(path).text_attribute(NetcdfFile::kGlobal, "title");
+  } catch (const InputError&) {
+    return std::nullopt;  // not one of ours, or damaged
+  }
 }
 
 std::vector<std::string> published_files(const std::filesystem::path& path) {

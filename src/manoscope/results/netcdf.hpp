@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,12 @@ void write_netcdf(const std::filesystem::path& path, const std::filesystem::path
 
 /// Reads what write_netcdf() wrote; every array comes back bit by bit.
 /// @throws InputError if the file is missing, not NetCDF, lacks a variable of the schema, or holds
-///         one of another shape or of absurd size.
+///         one of another shape or of absurd size; where another version of the program wrote it,
+///         the message says so first.
 Measurement read_netcdf(const std::filesystem::path& path);
+
+/// The attribute `title` of a result file; nullopt where there is no readable one.
+std::optional<std::string> title_in(const std::filesystem::path& path);
 
 /// The attribute `files` of a result file; empty where there is no readable one.
 std::vector<std::string> published_files(const std::filesystem::path& path);

@@ -60,6 +60,20 @@ void write_result(const fs::path& folder, const Measurement& measurement,
   publication.publish(earlier_files(folder));
 }
 
+bool check_destination(const fs::path& folder, const std::string& title, bool overwrite) {
+  const fs::path file = folder / kResultFile;
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(file, error))) return false;
+  if (overwrite) return true;
+  const auto earlier = title_in(file);
+  if (earlier == title) return true;
+  throw InputError(file.string(),
+                   earlier
+                       ? fmt::format("another experiment's result stands there, \"{}\"", *earlier)
+                       : "a file that is no readable result stands there",
+                   "Choose another folder, or give --overwrite to replace it");
+}
+
 Measurement read_result(const fs::path& folder_or_file) {
   std::error_code ignored;
   const bool folder = fs::is_directory(folder_or_file, ignored);

@@ -26,6 +26,16 @@ struct ExtraFile {
 void write_result(const std::filesystem::path& folder, const Measurement& measurement,
                   const std::vector<ExtraFile>& extra_files);
 
+/// Looks whether a result stands in `folder` that one of this title would replace.
+///
+/// A result of the same title is an earlier one of the same experiment, and is replaced. One of
+/// another title is another experiment's, and is not.
+/// @return True if there is a result to replace.
+/// @throws InputError if it is another experiment's, or a result.nc that cannot be read, unless
+///         `overwrite`.
+bool check_destination(const std::filesystem::path& folder, const std::string& title,
+                       bool overwrite);
+
 /// Reads what write_result() left.
 /// @param folder_or_file  the result folder or its result.nc.
 /// @throws InputError if it is missing, not a NetCDF file, or lacks a variable of the schema.

@@ -83,6 +83,29 @@ TEST(WriteResult, ReplacesADamagedEarlierResult) {
   expect_whole(folder.path(), 1);
 }
 
+TEST(CheckDestination, LetsAnExperimentReplaceItsOwnResultAndNoOther) {
+  const TemporaryFolder folder;
+  EXPECT_FALSE(check_destination(folder / "absent", "a", false));
+  EXPECT_FALSE(check_destination(folder.path(), "a", false));  // nothing there
+  const Measurement written = variant(1);
+  write_result(folder.path(), written, extras(1));
+  EXPECT_TRUE(check_destination(folder.path(), written.title, false));
+  const auto refused = [&](const std::string& told) {
+    try {
+      check_destination(folder.path(), "another title", false);
+      ADD_FAILURE() << "not refused";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where(), (folder / "result.nc").string());
+      EXPECT_NE(error.found().find(told), std::string::npos) << error.found();
+      EXPECT_NE(error.mend().find("--overwrite"), std::string::npos) << error.mend();
+    }
+    EXPECT_TRUE(check_destination(folder.path(), "another title", true));
+  };
+  refused(written.title);
+  std::ofstream(folder / "result.nc") << "half a fi";
+  refused("no readable result");
+}
+
 TEST(WriteResult, RefusesAnExtraFileOutsideTheFolder) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_result(folder / "r", variant(1), {{"../evil.txt", "x"}}), InternalError);

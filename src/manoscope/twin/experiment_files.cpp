@@ -2,18 +2,52 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <initializer_list>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/provenance.hpp"
 #include "manoscope/io/writer.hpp"
 
 namespace manoscope::twin {
 namespace {
 
+namespace fs = std::filesystem;
+
+const char* const kStaging = ".manoscope-twin";
+const char* const kToml = "experiment.toml";
+
 /// Ten digits: shorter than round-trip, so that 0.175 mm reads as 175 um.
 std::string in_unit(double number, const char* unit) {
   return fmt::format("\"{:.10g} {}\"", number, unit);
+}
+
+/// A quantity in the first of its units, from small to large, in which the number is below 1000.
+struct Unit {
+  double si;
+  const char* name;
+};
+
+std::string in_best_unit(double si, std::initializer_list<Unit> units) {
+  // Half a unit of the tenth digit: 999.99999999999 kPa is 1 MPa.
+  constexpr double kBelow = 1000.0 * (1.0 - 5e-11);
+  for (const Unit& unit : units) {
+    const bool last = unit.si == (units.end() - 1)->si;
+    if (last || std::abs(si) < kBelow * unit.si) return in_unit(si / unit.si, unit.name);
+  }
+  return {};
+}
+
+std::string best(Pressure pressure) {
+  return in_best_unit(pressure.si(), {{1.0, "Pa"}, {1e3, "kPa"}, {1e6, "MPa"}, {1e9, "GPa"}});
+}
+
+std::string best(Length length) {
+  return in_best_unit(length.si(), {{1e-12, "pm"}, {1e-9, "nm"}, {1e-6, "um"}, {1e-3, "mm"}});
 }
 
 /// A TOML basic string.
@@ -68,15 +102,15 @@ std::string channel_section(const Scenario& scenario, Length stated_height) {
 }
 
 std::string wall_section(const Scenario& scenario) {
-  const wall::Membrane& membrane = scenario.membrane;
+  const wall::ClampedWall& wall = scenario.wall;
   std::string text = "[wall]\n";
   if (!scenario.wall_material.empty()) {
     text += fmt::format("material = {}\n", quoted(scenario.wall_material));
   }
-  text += fmt::format("thickness = {}\n", in_unit(membrane.thickness.in(um), "um"));
-  text += fmt::format("youngs_modulus = {}\n", in_unit(membrane.youngs_modulus.in(GPa), "GPa"));
-  text += fmt::format("poisson_ratio = {:.10g}\n", membrane.poisson_ratio);
-  text += fmt::format("prestress = {}\n", in_unit(membrane.prestress.in(MPa), "MPa"));
+  text += fmt::format("thickness = {}\n", best(wall.thickness));
+  text += fmt::format("youngs_modulus = {}\n", best(wall.youngs_modulus));
+  text += fmt::format("poisson_ratio = {:.10g}\n", wall.poisson_ratio);
+  text += fmt::format("prestress = {}\n", best(wall.prestress));
   return text;
 }
 
@@ -84,15 +118,15 @@ std::string instrument_section(const Scenario& scenario) {
   const GaugeOptions& gauge = scenario.gauge;
   std::string text = "[instrument]\n";
   if (scenario.camera.noise > Length{}) {
-    text += fmt::format("height_noise = {}\n", in_unit(scenario.camera.noise.in(nm), "nm"));
+    text += fmt::format("height_noise = {}\n", best(scenario.camera.noise));
   }
-  text += fmt::format("pressure_noise = {}\n", in_unit(gauge.noise.in(Pa), "Pa"));
+  text += fmt::format("wavelength = {}\n", in_unit(scenario.camera.wavelength.in(nm), "nm"));
+  text += fmt::format("pressure_noise = {}\n", best(gauge.noise));
   if (gauge.gain_uncertainty > 0.0) {
     text += fmt::format("pressure_gain_uncertainty = {:.10g}\n", gauge.gain_uncertainty);
   }
   if (gauge.zero_uncertainty > Pressure{}) {
-    text += fmt::format("pressure_zero_uncertainty = {}\n",
-                        in_unit(gauge.zero_uncertainty.in(Pa), "Pa"));
+    text += fmt::format("pressure_zero_uncertainty = {}\n", best(gauge.zero_uncertainty));
   }
   return text;
 }
@@ -109,15 +143,118 @@ std::string rigid_section(const Scenario& scenario) {
          line("outlet", scenario.outlet_passage);
 }
 
+/// Folders that were not there; gone again, if empty, unless they are kept.
+class NewFolders {
+ public:
+  /// @throws InputError if the folder cannot be made.
+  explicit NewFolders(const fs::path& folder) {
+    std::error_code error;
+    std::vector<fs::path> missing;
+    for (fs::path path = folder; !path.empty() && !fs::exists(path, error);
+         path = path.parent_path()) {
+      missing.push_back(path);
+    }
+    error.clear();
+    for (auto path = missing.rbegin(); path != missing.rend(); ++path) {
+      if (fs::create_directory(*path, error)) made_.push_back(*path);
+      if (error) break;
+    }
+    if (!error && !fs::is_directory(folder, error)) {
+      error = std::make_error_code(std::errc::not_a_directory);
+    }
+    if (!error) return;
+    withdraw();
+    throw InputError(folder.string(),
+                     fmt::format("the folder cannot be made ({})", error.message()),
+                     "Choose a place where you may write");
+  }
+  ~NewFolders() { withdraw(); }
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+
+  void keep() { made_.clear(); }
+
+ private:
+  void withdraw() {
+    std::error_code ignored;
+    for (auto path = made_.rbegin(); path != made_.rend(); ++path) fs::remove(*path, ignored);
+    made_.clear();
+  }
+
+  std::vector<fs::path> made_;
+};
+
+/// A folder for files that are not yet in place; gone with all it holds.
+class Staging {
+ public:
+  explicit Staging(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);  // of a run that was killed
+    NewFolders made(folder_ / "truth");
+    made.keep();
+  }
+  ~Staging() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
+/// Every file of an experiment but experiment.toml, and the name of each.
+std::vector<fs::path> write_all(const fs::path& folder, const VirtualExperiment& experiment,
+                                const Monitor& monitor) {
+  std::vector<fs::path> names;
+  TruthHeader header = experiment.header;
+  for (const NamedMap& map : experiment.maps) {
+    monitor.checkpoint();
+    io::write_map(folder / map.name, map.map, map.title);
+    header.inputs += fmt::format("{}  {}\n", map.name, sha256(read_file(folder / map.name)));
+    names.emplace_back(map.name);
+  }
+  const auto text = [&](const fs::path& name, const std::string& bytes) {
+    write_file_atomically(folder / name, bytes);
+    names.push_back(name);
+  };
+  const Truth& truth = experiment.truth;
+  text("truth/truth.csv", truth_csv(truth));
+  write_truth_netcdf(folder / "truth/truth.nc", truth, experiment.scalars, header);
+  names.emplace_back("truth/truth.nc");
+  text("truth/truth_scalars.csv", truth_scalars_csv(experiment.scalars, header.channel.height));
+  text("truth/truth_levels.csv", truth_levels_csv(truth.levels));
+  text("truth/truth_static.csv", truth_static_csv(truth.x, truth.levels));
+  text("hydrostatic.csv", experiment.hydrostatic_csv);
+  if (!truth.runs.empty()) text("flow.csv", experiment.flow_csv);
+  return names;
+}
+
+/// Refuses a folder that holds an experiment.
+void check_free(const fs::path& folder, bool overwrite) {
+  std::error_code error;
+  if (overwrite || !fs::exists(folder / kToml, error)) return;
+  throw InputError((folder / kToml).string(), "an experiment stands there already",
+                   "Choose another folder, or add --overwrite");
+}
+
 }  // namespace
 
 std::string run_label(FlowRate flow_rate) {
   return fmt::format("Q{:.6g}", flow_rate.in(mL_per_min));
 }
 
-std::string experiment_toml(const Scenario& scenario, Length stated_height) {
+std::string experiment_name(const Scenario& scenario, std::uint64_t seed) {
+  return fmt::format("{}, seed {}", scenario.name, seed);
+}
+
+std::string experiment_toml(const Scenario& scenario, const std::string& name,
+                            Length stated_height) {
   std::string text = "manoscope = 1\n";
-  text += fmt::format("name = {}\n\n", quoted(scenario.name));
+  text += fmt::format("name = {}\n\n", quoted(name));
   text += channel_section(scenario, stated_height) + "\n";
   text += wall_section(scenario) + "\n";
   text += "[fluid]\n";
@@ -149,40 +286,43 @@ std::string flow_csv(const std::vector<RunScalars>& runs) {
   return text;
 }
 
-void write_experiment(const std::filesystem::path& folder, const VirtualExperiment& experiment,
-                      bool overwrite) {
-  const auto toml = folder / "experiment.toml";
+void check_destination(const fs::path& folder, bool overwrite) {
+  check_free(folder, overwrite);
+  const NewFolders made(folder);
+  // Withdrawn again without commit().
+  const AtomicFile beside(folder / "hydrostatic.csv");
   std::error_code error;
-  if (std::filesystem::exists(toml, error) && !overwrite) {
-    throw InputError(toml.string(), "an experiment stands there already",
-                     "Choose another folder, or ask to overwrite it");
+  if (fs::exists(folder / "truth", error)) {
+    const AtomicFile apart(folder / "truth" / "truth.csv");
   }
-  error.clear();
-  std::filesystem::create_directories(folder / "truth", error);
-  if (error) {
-    throw InputError((folder / "truth").string(),
-                     fmt::format("the folder cannot be made ({})", error.message()),
+}
+
+void write_experiment(const fs::path& folder, const VirtualExperiment& experiment, bool overwrite,
+                      const Monitor& monitor) {
+  check_destination(folder, overwrite);
+  NewFolders made(folder);
+  const Staging staging(folder / kStaging);
+  const std::vector<fs::path> names = write_all(staging.folder(), experiment, monitor);
+  write_file_atomically(staging.folder() / kToml, experiment.experiment_toml);
+
+  std::error_code error;
+  const auto check = [&](const fs::path& path) {
+    if (!error) return;
+    throw InputError(path.string(), fmt::format("it cannot be replaced ({})", error.message()),
                      "Choose a place where you may write");
+  };
+  NewFolders truth(folder / "truth");
+  // A folder with an experiment.toml is complete: the old one goes before its maps change.
+  fs::remove(folder / kToml, error);
+  check(folder / kToml);
+  for (const fs::path& name : names) {
+    fs::rename(staging.folder() / name, folder / name, error);
+    check(folder / name);
   }
-  // A folder with an experiment.toml is complete: withdraw the old one before its maps change.
-  std::filesystem::remove(toml, error);
-  if (error) {
-    throw InputError(toml.string(), fmt::format("it cannot be replaced ({})", error.message()),
-                     "Choose a place where you may write");
-  }
-  for (const NamedMap& map : experiment.maps) io::write_map(folder / map.name, map.map, map.title);
-  const auto truth = folder / "truth";
-  write_file_atomically(truth / "truth.csv", truth_csv(experiment.truth));
-  write_file_atomically(truth / "truth_scalars.csv",
-                        truth_scalars_csv(experiment.scalars, experiment.height));
-  write_file_atomically(truth / "truth_levels.csv", truth_levels_csv(experiment.levels));
-  write_file_atomically(truth / "truth_static.csv",
-                        truth_static_csv(experiment.truth.x, experiment.levels));
-  write_file_atomically(folder / "hydrostatic.csv", experiment.hydrostatic_csv);
-  if (!experiment.truth.runs.empty()) {
-    write_file_atomically(folder / "flow.csv", experiment.flow_csv);
-  }
-  write_file_atomically(toml, experiment.experiment_toml);
+  fs::rename(staging.folder() / kToml, folder / kToml, error);
+  check(folder / kToml);
+  truth.keep();
+  made.keep();
 }
 
 }  // namespace manoscope::twin

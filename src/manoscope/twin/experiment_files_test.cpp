@@ -9,6 +9,7 @@
 #include <string>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/provenance.hpp"
 #include "manoscope/io/csv_table.hpp"
 #include "manoscope/io/reader.hpp"
 
@@ -90,7 +91,7 @@ TEST_F(ExperimentFolder, HasTheSameBytesForTheSameSeedOnOneOrTwoThreads) {
     EXPECT_EQ(content(entry.path()), content(other)) << other;
     ++n_files;
   }
-  EXPECT_EQ(n_files, 21 + 3 + 4);
+  EXPECT_EQ(n_files, 21 + 3 + 5);
 }
 
 TEST_F(ExperimentFolder, IsNotReplacedUnlessAsked) {
@@ -102,6 +103,36 @@ TEST_F(ExperimentFolder, IsNotReplacedUnlessAsked) {
   write_experiment(folder_, other, true);
   EXPECT_NE(content(folder_ / "h03.gsf"), before);
   EXPECT_EQ(content(folder_ / "experiment.toml"), other.experiment_toml);
+}
+
+TEST_F(ExperimentFolder, IsLeftAsItWasByACheckAndByAWriteThatIsStopped) {
+  check_destination(folder_ / "deep" / "er");
+  EXPECT_FALSE(fs::exists(folder_));
+  const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
+  int asked = 0;
+  Monitor stop;
+  stop.stop_requested = [&] { return ++asked > 5; };  // at the sixth map
+  EXPECT_THROW(write_experiment(folder_ / "new", experiment, false, stop), Interrupted);
+  EXPECT_FALSE(fs::exists(folder_));
+
+  write_experiment(folder_, experiment);
+  const std::string before = content(folder_ / "h03.gsf");
+  asked = 0;
+  EXPECT_THROW(write_experiment(folder_, make_virtual_experiment(scenario_, 2), true, stop),
+               Interrupted);
+  EXPECT_EQ(content(folder_ / "h03.gsf"), before);
+  EXPECT_EQ(content(folder_ / "experiment.toml"), experiment.experiment_toml);
+  EXPECT_FALSE(fs::exists(folder_ / ".manoscope-twin"));
+}
+
+TEST_F(ExperimentFolder, KeepsTheHashOfEveryMapInItsTruth) {
+  write_experiment(folder_, make_virtual_experiment(scenario_, 1));
+  const Truth truth = read_truth(folder_);
+  EXPECT_EQ(truth.name, "S1 (virtual), seed 1");
+  for (const char* name : {"h00.gsf", "h16.gsf", "f03.gsf"}) {
+    const std::string line = std::string(name) + "  " + sha256(content(folder_ / name)) + "\n";
+    EXPECT_NE(truth.inputs.find(line), std::string::npos) << line << truth.inputs;
+  }
 }
 
 TEST_F(ExperimentFolder, ThatCannotBeMadeIsAClearError) {
@@ -122,10 +153,10 @@ TEST(ExperimentToml, StatesEveryValueWithItsUnit) {
   scenario.camera.rotation = 0.5 * deg;
   scenario.gauge.gain_uncertainty = 0.002;
   scenario.gauge.zero_uncertainty = 5.0 * Pa;
-  const std::string text = experiment_toml(scenario, 174.48 * um);
+  const std::string text = experiment_toml(scenario, experiment_name(scenario, 7), 174.48 * um);
   for (const char* line :
        {"manoscope = 1\n",
-        "name = \"a \\\"quoted\\\" name\"\n",
+        "name = \"a \\\"quoted\\\" name, seed 7\"\n",
         "length = \"15.5 mm\"\n",
         "width = \"1.7 mm\"\n",
         "height = \"174.48 um\"\n",
@@ -134,7 +165,7 @@ TEST(ExperimentToml, StatesEveryValueWithItsUnit) {
         "flow = \"-rows\"\n",
         "rotation = \"0.5 deg\"\n",
         "outward = \"-height\"\n",
-        "thickness = \"0.2 um\"\n",
+        "thickness = \"200 nm\"\n",
         "youngs_modulus = \"250 GPa\"\n",
         "poisson_ratio = 0.23\n",
         "prestress = \"10 MPa\"\n",
@@ -149,6 +180,24 @@ TEST(ExperimentToml, StatesEveryValueWithItsUnit) {
         "inlet = {length = \"2 mm\", width = \"1.7 mm\", height = \"250 um\"}\n"}) {
     EXPECT_NE(text.find(line), std::string::npos) << line << "\nin\n" << text;
   }
+}
+
+TEST(ExperimentToml, ChoosesTheUnitInWhichANumberIsNotSmall) {
+  Scenario scenario = small_s1();
+  scenario.wall.youngs_modulus = 1.0 * MPa;
+  scenario.wall.prestress = -2.5 * kPa;
+  scenario.wall.thickness = 0.1 * mm;
+  const auto holds = [&](const char* line) {
+    const std::string text = experiment_toml(scenario, "soft", 100.0 * um);
+    return text.find(line) != std::string::npos;
+  };
+  EXPECT_TRUE(holds("youngs_modulus = \"1 MPa\"\n"));
+  EXPECT_TRUE(holds("prestress = \"-2.5 kPa\"\n"));
+  EXPECT_TRUE(holds("thickness = \"100 um\"\n"));
+  scenario.wall.prestress = Pressure{};
+  EXPECT_TRUE(holds("prestress = \"0 Pa\"\n"));
+  scenario.wall.youngs_modulus = Pressure::from_si(999999.99999999);  // not "1000 kPa"
+  EXPECT_TRUE(holds("youngs_modulus = \"1 MPa\"\n"));
 }
 
 TEST(RunLabel, IsTheFlowRateInMillilitresAMinute) {

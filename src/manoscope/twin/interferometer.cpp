@@ -1,41 +1,17 @@
 #include "manoscope/twin/interferometer.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
-#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "manoscope/core/error.hpp"
-#include "manoscope/core/flags.hpp"
 #include "manoscope/core/random.hpp"
+#include "manoscope/twin/map_errors.hpp"
+#include "manoscope/twin/point_spread.hpp"
 
 namespace manoscope::twin {
 namespace {
-
-constexpr int kMostPixels = 20000;  // along one axis
-
-void require(bool holds, const std::string& found, const char* mend) {
-  if (!holds) throw InputError("interferometer", found, mend);
-}
-
-void require_size(int n, const char* name) {
-  require(n >= 8 && n <= kMostPixels, fmt::format("{} is {}", name, n), "Choose 8 to 20000 pixels");
-}
-
-template <class Q>
-void require_not_negative(Q value, const char* name, const char* unit) {
-  require(value.si() >= 0.0 && std::isfinite(value.si()),
-          fmt::format("{} is {:g} {}", name, value.si(), unit), "Give 0 (off) or more");
-}
-
-void require_fraction(double value, const char* name) {
-  require(value >= 0.0 && value <= 0.5, fmt::format("{} is {:g}", name, value),
-          "Choose a fraction of the pixels in [0, 0.5]");
-}
 
 /// Position (x, z) of a point of the camera in the channel: camera_from_channel() undone.
 std::array<double, 2> channel_from_camera(const ChannelFrame& frame, double column, double row) {
@@ -46,71 +22,69 @@ std::array<double, 2> channel_from_camera(const ChannelFrame& frame, double colu
   return {frame.flow_sign() * along, frame.across_sign() * across - 0.5 * frame.width.si()};
 }
 
-/// Loses pixels one by one and in blobs.
-void drop_pixels(const InterferometerOptions& options, std::uint64_t seed, std::uint64_t map_index,
-                 Flags2& flags) {
-  RandomStream single(seed, "dropouts", map_index);
-  for (Index i = 0; i < flags.size(); ++i) {
-    if (single.uniform() < options.dropouts) flags.data()[i] = PixelFlag::no_data;
+/// How the sample lies under the camera while one map is taken.
+struct Posture {
+  double column = 0.0, row = 0.0;       // m, lateral shift
+  double turn = 0.0;                    // rad, about the map's centre
+  double slope_x = 0.0, slope_y = 0.0;  // m/m
+  double offset = 0.0;                  // m
+};
+
+/// Sum of the steps up to a map: a random walk that is 0 at map 0.
+std::array<double, 2> walk(const MapKey& key, std::string_view name) {
+  RandomStream steps(key.seed, name);
+  std::array<double, 2> sum{};
+  for (std::uint64_t i = 0; i < key.index; ++i) {
+    for (double& component : sum) component += steps.normal();
   }
-  RandomStream blob(seed, "blobs", map_index);
-  const double low = 1.5,
-               high = 3.5;  // radius in pixels; mean area pi (low^2 + low high + high^2)/3
-  const double area = std::numbers::pi * (low * low + low * high + high * high) / 3.0;
-  const double expected = options.blobs * static_cast<double>(flags.size()) / area;
-  const auto count = static_cast<Index>(expected + blob.uniform());
-  for (Index i = 0; i < count; ++i) {
-    const double cx = blob.uniform(0.0, static_cast<double>(flags.cols()));
-    const double cy = blob.uniform(0.0, static_cast<double>(flags.rows()));
-    const double radius = blob.uniform(low, high);
-    const auto bound = [](double value, Index n) {
-      return std::clamp<Index>(static_cast<Index>(std::floor(value)), 0, n - 1);
-    };
-    for (Index iy = bound(cy - radius, flags.rows()); iy <= bound(cy + radius, flags.rows());
-         ++iy) {
-      for (Index ix = bound(cx - radius, flags.cols()); ix <= bound(cx + radius, flags.cols());
-           ++ix) {
-        const double dx = static_cast<double>(ix) + 0.5 - cx;
-        const double dy = static_cast<double>(iy) + 0.5 - cy;
-        if (dx * dx + dy * dy < radius * radius) flags(iy, ix) = PixelFlag::no_data;
-      }
-    }
-  }
+  return sum;
 }
 
-void add_noise_and_spikes(const InterferometerOptions& options, std::uint64_t seed,
-                          std::uint64_t map_index, Array2& height) {
-  if (options.noise > Length{}) {
-    RandomStream noise(seed, "pixel noise", map_index);
-    for (Index i = 0; i < height.size(); ++i)
-      height.data()[i] += options.noise.si() * noise.normal();
+Posture draw_posture(const InterferometerOptions& options, const MapKey& key) {
+  Posture posture;
+  RandomStream placing(key.seed, "shift", key.index);
+  posture.column = options.shift.si() * placing.normal();
+  posture.row = options.shift.si() * placing.normal();
+  RandomStream leaning(key.seed, "tilt", key.index);
+  double tilt_x = options.tilt.si() * leaning.normal();
+  double tilt_y = options.tilt.si() * leaning.normal();
+  posture.offset = options.piston.si() * RandomStream(key.seed, "piston", key.index).normal();
+  posture.turn =
+      options.rotation_scatter.si() * RandomStream(key.seed, "rotation", key.index).normal();
+  if (options.shift_drift > Length{}) {
+    const auto [column, row] = walk(key, "shift drift");
+    posture.column += options.shift_drift.si() * column;
+    posture.row += options.shift_drift.si() * row;
   }
-  RandomStream spikes(seed, "spikes", map_index);
-  for (Index i = 0; i < height.size(); ++i) {
-    if (spikes.uniform() >= options.spikes) continue;
-    const double sign = spikes.uniform() < 0.5 ? -1.0 : 1.0;
-    height.data()[i] += sign * spikes.uniform(0.5, 1.5) * options.spike_height.si();
+  if (options.tilt_drift > Angle{}) {
+    const auto [x, y] = walk(key, "tilt drift");
+    tilt_x += options.tilt_drift.si() * x;
+    tilt_y += options.tilt_drift.si() * y;
   }
+  if (options.piston_drift > Length{}) {
+    posture.offset += options.piston_drift.si() * walk(key, "piston drift")[0];
+  }
+  posture.slope_x = std::tan(tilt_x);
+  posture.slope_y = std::tan(tilt_y);
+  return posture;
+}
+
+/// The frame of a channel that was turned about the map's centre, then shifted.
+ChannelFrame moved(ChannelFrame frame, const CameraGrid& grid, const Posture& posture) {
+  if (posture.turn != 0.0) {
+    const double cx = 0.5 * grid.size_x().si(), cy = 0.5 * grid.size_y().si();
+    const double dx = frame.origin_x.si() - cx, dy = frame.origin_y.si() - cy;
+    const double c = std::cos(posture.turn), s = std::sin(posture.turn);
+    frame.origin_x = Length::from_si(cx + c * dx - s * dy);
+    frame.origin_y = Length::from_si(cy + s * dx + c * dy);
+    frame.rotation += Angle::from_si(posture.turn);
+  }
+  frame.origin_x += Length::from_si(posture.column);
+  frame.origin_y += Length::from_si(posture.row);
+  return frame;
 }
 
 }  // namespace
-
-void InterferometerOptions::validate() const {
-  require_size(n_along, "n_along");
-  require_size(n_across, "n_across");
-  require_not_negative(rim, "rim", "m");
-  require_not_negative(noise, "noise", "m");
-  require_not_negative(tilt, "tilt", "rad");
-  require(tilt.si() < 0.1, fmt::format("tilt is {:g} rad", tilt.si()), "Choose less than 0.1 rad");
-  require_not_negative(piston, "piston", "m");
-  require_not_negative(shift, "shift", "m");
-  require_fraction(dropouts, "dropouts");
-  require_fraction(blobs, "blobs");
-  require_fraction(spikes, "spikes");
-  require_not_negative(spike_height, "spike_height", "m");
-  require(std::abs(rotation.si()) < 0.2, fmt::format("rotation is {:g} rad", rotation.si()),
-          "Choose a small angle, less than 0.2 rad");
-}
 
 CameraGrid camera_grid(const flow::Channel& channel, const InterferometerOptions& options) {
   options.validate();
@@ -151,38 +125,45 @@ Array1 pixel_stations(const flow::Channel& channel, const InterferometerOptions&
   return Eigen::Map<const Array1>(inside.data(), static_cast<Index>(inside.size()));
 }
 
-HeightMap record_map(const flow::Channel& channel, const UniformCurve& deflection,
+HeightMap record_map(const flow::Channel& channel, const WallShape& shape,
                      const InterferometerOptions& options, std::uint64_t seed,
                      std::uint64_t map_index) {
   const CameraGrid grid = camera_grid(channel, options);
-  ChannelFrame frame = channel_frame(channel, options);
-  RandomStream placing(seed, "shift", map_index);
-  frame.origin_x += placing.normal() * options.shift;
-  frame.origin_y += placing.normal() * options.shift;
-  RandomStream posture(seed, "tilt", map_index);
-  const double slope_x = std::tan(options.tilt.si() * posture.normal());
-  const double slope_y = std::tan(options.tilt.si() * posture.normal());
-  const double offset = options.piston.si() * RandomStream(seed, "piston", map_index).normal();
+  const MapKey key{seed, map_index};
+  const Posture posture = draw_posture(options, key);
+  const ChannelFrame frame = moved(channel_frame(channel, options), grid, posture);
 
   const double sign = options.outward == Outward::plus_height ? 1.0 : -1.0;
-  const double half_width = 0.5 * channel.width.si();
+  const auto centre = [](Index i, Length pitch) {
+    return (static_cast<double>(i) + 0.5) * pitch.si();
+  };
   Array2 height(grid.ny, grid.nx);
   for (Index iy = 0; iy < grid.ny; ++iy) {
-    const double row = (static_cast<double>(iy) + 0.5) * grid.pitch_y.si();
     for (Index ix = 0; ix < grid.nx; ++ix) {
-      const double column = (static_cast<double>(ix) + 0.5) * grid.pitch_x.si();
-      const auto [x, z] = channel_from_camera(frame, column, row);
-      const double across = z / half_width;
-      const double zeta =
-          std::abs(across) < 1.0 ? 1.5 * deflection(x) * (1.0 - across * across) : 0.0;
-      height(iy, ix) = sign * zeta + offset + slope_x * (column - 0.5 * grid.size_x().si()) +
-                       slope_y * (row - 0.5 * grid.size_y().si());
+      const auto [x, z] =
+          channel_from_camera(frame, centre(ix, grid.pitch_x), centre(iy, grid.pitch_y));
+      height(iy, ix) = sign * shape(x, z);
     }
   }
-  add_noise_and_spikes(options, seed, map_index, height);
-  Flags2 flags = Flags2::Zero(grid.ny, grid.nx);
-  drop_pixels(options, seed, map_index, flags);
-  return HeightMap(grid, std::move(height), std::move(flags));
+  if (options.blur > Length{}) {
+    blur(height, options.blur / grid.pitch_x, options.blur / grid.pitch_y);
+  }
+  for (Index iy = 0; iy < grid.ny; ++iy) {
+    const double row = centre(iy, grid.pitch_y) - 0.5 * grid.size_y().si();
+    for (Index ix = 0; ix < grid.nx; ++ix) {
+      const double column = centre(ix, grid.pitch_x) - 0.5 * grid.size_x().si();
+      height(iy, ix) =
+          height(iy, ix) + posture.offset + posture.slope_x * column + posture.slope_y * row;
+    }
+  }
+  add_height_errors(options, grid, key, height);
+  return HeightMap(grid, std::move(height), lost_pixels(options, grid, key));
+}
+
+HeightMap record_map(const flow::Channel& channel, const ChannelCurve& deflection,
+                     const InterferometerOptions& options, std::uint64_t seed,
+                     std::uint64_t map_index) {
+  return record_map(channel, parabolic_shape(channel.width, deflection), options, seed, map_index);
 }
 
 }  // namespace manoscope::twin

@@ -27,20 +27,20 @@ InterferometerOptions perfect() {
 }
 
 /// Larger at the inlet than at the outlet, so that a reversed channel shows.
-UniformCurve some_deflection() {
+ChannelCurve some_deflection() {
   const Array1 x = Array1::LinSpaced(2001, 0.0, 15.5e-3);
-  const Array1 wall = small_s1().make_wall().deflection(x, 9.0 * kPa);
+  const Array1 wall = small_s1().tapered_membrane().deflection(x, 9.0 * kPa);
   return {kChannel.length, wall * (1.0 - 0.6 * x / 15.5e-3)};
 }
 
-UniformCurve flat() { return {kChannel.length, Array1::Zero(8)}; }
+ChannelCurve flat() { return {kChannel.length, Array1::Zero(8)}; }
 
 double fraction_lost(const HeightMap& map) {
   return static_cast<double>((map.flags() != 0).count()) / static_cast<double>(map.flags().size());
 }
 
 TEST(Interferometer, WithoutErrorsShowsTheWallWhoseWidthAverageIsTheDeflection) {
-  const UniformCurve zeta = some_deflection();
+  const ChannelCurve zeta = some_deflection();
   const InterferometerOptions options = perfect();
   const HeightMap map = record_map(kChannel, zeta, options, 1, 0);
   const double pitch_z = map.grid().pitch_y.si(), w = kChannel.width.si();
@@ -67,7 +67,7 @@ TEST(Interferometer, SeesARimAtRestAroundTheChannel) {
 }
 
 TEST(Interferometer, PutsEveryChannelPointWhereItsFrameSays) {
-  const UniformCurve zeta = some_deflection();
+  const ChannelCurve zeta = some_deflection();
   for (const FlowDirection flow : {FlowDirection::plus_columns, FlowDirection::minus_columns,
                                    FlowDirection::plus_rows, FlowDirection::minus_rows}) {
     for (const bool reversed : {false, true}) {

@@ -8,6 +8,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/csv_table.hpp"
+#include "manoscope/twin/truth_netcdf.hpp"
 
 namespace manoscope::twin {
 namespace {
@@ -34,8 +35,49 @@ Array1 read_column(const io::CsvTable& table, std::size_t column, double scale) 
 std::filesystem::path find_truth(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(path, ignored)) return path;
-  const auto nested = path / "truth" / "truth.csv";
-  return std::filesystem::exists(nested, ignored) ? nested : path / "truth.csv";
+  for (const char* name : {"truth/truth.nc", "truth.nc", "truth/truth.csv"}) {
+    if (std::filesystem::exists(path / name, ignored)) return path / name;
+  }
+  return path / "truth.csv";
+}
+
+Truth read_table(const std::filesystem::path& path) {
+  const io::CsvTable table = io::read_csv_table(path);
+  const auto x_column = table.column("x_mm");
+  if (!x_column || table.rows.size() < 2) {
+    throw InputError(table.path.string(),
+                     x_column ? fmt::format("{} row(s) of numbers", table.rows.size())
+                              : std::string("no column \"x_mm\""),
+                     "A truth table has x_mm, p_Pa_<run> and zeta_um_<run> columns and two rows "
+                     "or more");
+  }
+  Truth truth;
+  truth.x = 1e-3 * read_column(table, *x_column, 1.0);
+  for (Index i = 1; i < truth.x.size(); ++i) {
+    if (truth.x(i) > truth.x(i - 1)) continue;
+    throw InputError(
+        fmt::format("{}:{}", table.path.string(), table.rows[static_cast<std::size_t>(i)].line),
+        "x_mm does not grow", "Sort the rows along the channel and drop duplicates");
+  }
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    const std::string& name = table.columns[column].name;
+    if (name.rfind(kPressurePrefix, 0) != 0) continue;
+    const std::string run = name.substr(kPressurePrefix.size());
+    const std::string partner = std::string(kDeflectionPrefix) + run;
+    const auto deflection = table.column(partner);
+    if (!deflection) {
+      throw InputError(table.path.string(),
+                       fmt::format("column \"{}\" without \"{}\"", name, partner),
+                       "Give both columns for every run");
+    }
+    truth.runs.push_back(
+        {run, read_column(table, column, 1.0), read_column(table, *deflection, 1e-6)});
+  }
+  if (truth.runs.empty()) {
+    throw InputError(table.path.string(), "no column that begins with \"p_Pa_\"",
+                     "Give p_Pa_<run> and zeta_um_<run> for at least one run");
+  }
+  return truth;
 }
 
 }  // namespace
@@ -97,42 +139,8 @@ std::string truth_static_csv(const Array1& x, const std::vector<LevelTruth>& lev
 }
 
 Truth read_truth(const std::filesystem::path& path) {
-  const io::CsvTable table = io::read_csv_table(find_truth(path));
-  const auto x_column = table.column("x_mm");
-  if (!x_column || table.rows.size() < 2) {
-    throw InputError(table.path.string(),
-                     x_column ? fmt::format("{} row(s) of numbers", table.rows.size())
-                              : std::string("no column \"x_mm\""),
-                     "A truth table has x_mm, p_Pa_<run> and zeta_um_<run> columns and two rows "
-                     "or more");
-  }
-  Truth truth;
-  truth.x = 1e-3 * read_column(table, *x_column, 1.0);
-  for (Index i = 1; i < truth.x.size(); ++i) {
-    if (truth.x(i) > truth.x(i - 1)) continue;
-    throw InputError(
-        fmt::format("{}:{}", table.path.string(), table.rows[static_cast<std::size_t>(i)].line),
-        "x_mm does not grow", "Sort the rows along the channel and drop duplicates");
-  }
-  for (std::size_t column = 0; column < table.columns.size(); ++column) {
-    const std::string& name = table.columns[column].name;
-    if (name.rfind(kPressurePrefix, 0) != 0) continue;
-    const std::string run = name.substr(kPressurePrefix.size());
-    const std::string partner = std::string(kDeflectionPrefix) + run;
-    const auto deflection = table.column(partner);
-    if (!deflection) {
-      throw InputError(table.path.string(),
-                       fmt::format("column \"{}\" without \"{}\"", name, partner),
-                       "Give both columns for every run");
-    }
-    truth.runs.push_back(
-        {run, read_column(table, column, 1.0), read_column(table, *deflection, 1e-6)});
-  }
-  if (truth.runs.empty()) {
-    throw InputError(table.path.string(), "no column that begins with \"p_Pa_\"",
-                     "Give p_Pa_<run> and zeta_um_<run> for at least one run");
-  }
-  return truth;
+  const auto file = find_truth(path);
+  return file.extension() == ".nc" ? read_truth_netcdf(file) : read_table(file);
 }
 
 }  // namespace manoscope::twin

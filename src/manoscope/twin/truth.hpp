@@ -16,10 +16,23 @@ struct RunTruth {
   Array1 deflection;  ///< (n) width-averaged zeta(x), m
 };
 
-/// What a measurement should have found: the content of truth.csv.
+/// What was true of one calibration level.
+struct LevelTruth {
+  std::string map;
+  Pressure pressure{};  ///< true
+  Pressure label{};     ///< as the gauge read it
+  Array1 deflection;    ///< (n) width-averaged zeta(x; pressure), m, at Truth::x
+  Array1 compliance{};  ///< (n) d zeta / d pressure, m/Pa, > 0 on a stable branch; empty: unknown
+};
+
+/// What a measurement should have found.
 struct Truth {
   Array1 x;  ///< (n) m from the inlet edge, ascending
   std::vector<RunTruth> runs;
+  std::vector<LevelTruth> levels{};  ///< empty where a truth tells of runs only
+  std::string name{};                ///< of the experiment; empty: not told
+  /// One "name  sha256" of a map a line, as in the result file; empty: not told.
+  std::string inputs{};
 };
 
 /// The single numbers of one run: a row of truth_scalars.csv.
@@ -30,17 +43,10 @@ struct RunScalars {
   Pressure transducer_reading{};          ///< with its noise
   Length largest_deflection{};            ///< of the width average along x
   double reynolds = 0.0;                  ///< mean of Re_x over the channel
+  double speed_index = 0.0;               ///< largest S along the channel; 1 = choked
 
   Pressure compliant_drop() const { return inlet - outlet; }
   Pressure total_drop() const { return compliant_drop() + parasitic; }
-};
-
-/// What was true of one calibration level.
-struct LevelTruth {
-  std::string map;
-  Pressure pressure{};  ///< true
-  Pressure label{};     ///< as the gauge read it
-  Array1 deflection;    ///< (n) width-averaged zeta(x; pressure), m, at Truth::x
 };
 
 /// truth.csv: x_mm, then p_Pa_<run> and zeta_um_<run> for each run; 1 mPa and 1 pm resolution.
@@ -52,9 +58,10 @@ std::string truth_levels_csv(const std::vector<LevelTruth>& levels);
 /// truth_static.csv: x_mm, then zeta_um_<map without extension> for each level.
 std::string truth_static_csv(const Array1& x, const std::vector<LevelTruth>& levels);
 
-/// Reads a truth.csv.
+/// Reads a truth.nc (truth_netcdf.hpp), or a truth.csv, which tells of runs only.
 ///
-/// @param path  the file, a folder that holds truth.csv, or one that holds truth/truth.csv.
+/// @param path  the file, or a folder that holds truth/truth.nc, truth.nc, truth/truth.csv or
+///              truth.csv: the first of these counts.
 /// @throws InputError naming file, column and line if it is missing or not such a table.
 Truth read_truth(const std::filesystem::path& path);
 

@@ -8,6 +8,7 @@
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/twin/scenario.hpp"
 #include "manoscope/twin/truth.hpp"
+#include "manoscope/twin/truth_netcdf.hpp"
 
 namespace manoscope::twin {
 
@@ -25,10 +26,9 @@ struct VirtualExperiment {
   std::string hydrostatic_csv;
   std::string flow_csv;
 
-  Truth truth;
+  Truth truth;                      ///< of every run and level
   std::vector<RunScalars> scalars;  ///< one a run
-  std::vector<LevelTruth> levels;   ///< one a level
-  Length height{};                  ///< true gap 2 h0; the experiment states it with an error
+  TruthHeader header;               ///< true sizes; the experiment states the gap with an error
 };
 
 /// Runs a scenario: each level and each flow rate once, seen through the instrument's errors.

@@ -16,7 +16,6 @@ Scenario tiny() {
   Scenario scenario = small_s1();
   scenario.camera.n_along = 96;
   scenario.camera.n_across = 48;
-  scenario.solver.steps = 400;
   return scenario;
 }
 
@@ -44,7 +43,7 @@ TEST(VirtualExperiment, HoldsAMapForEachLevelAndRun) {
   ASSERT_EQ(experiment.maps.size(), 21u);
   EXPECT_EQ(experiment.maps.front().name, "h00.gsf");
   EXPECT_EQ(experiment.maps.back().name, "f03.gsf");
-  EXPECT_EQ(experiment.levels.size(), 17u);
+  EXPECT_EQ(experiment.truth.levels.size(), 17u);
   ASSERT_EQ(experiment.truth.runs.size(), 4u);
   EXPECT_EQ(experiment.truth.runs.back().run, "Q70");
   EXPECT_EQ(experiment.truth.x.size(), experiment.truth.runs[0].pressure.size());
@@ -70,7 +69,7 @@ TEST(VirtualExperiment, TruthAgreesWithItsMaps) {
     }
   };
   for (std::size_t i = 0; i < 17; ++i) {
-    check(experiment.maps[i].map, experiment.levels[i].deflection);
+    check(experiment.maps[i].map, experiment.truth.levels[i].deflection);
   }
   for (std::size_t i = 0; i < 4; ++i) {
     check(experiment.maps[17 + i].map, experiment.truth.runs[i].deflection);
@@ -85,9 +84,10 @@ TEST(VirtualExperiment, LabelsScatterByTheGaugeAndTheVentedLevelIsExact) {
   int n = 0;
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     const VirtualExperiment experiment = make_virtual_experiment(scenario, seed, 1);
-    EXPECT_EQ(experiment.levels.front().label.si(), 0.0);
-    for (std::size_t i = 1; i < experiment.levels.size(); ++i) {
-      const double error = (experiment.levels[i].label - experiment.levels[i].pressure).si();
+    EXPECT_EQ(experiment.truth.levels.front().label.si(), 0.0);
+    for (std::size_t i = 1; i < experiment.truth.levels.size(); ++i) {
+      const double error =
+          (experiment.truth.levels[i].label - experiment.truth.levels[i].pressure).si();
       sum += error;
       squares += error * error;
       ++n;
@@ -106,17 +106,17 @@ TEST(VirtualExperiment, GaugeGainAndZeroAreCommonToAllLevels) {
   scenario.gauge.gain_uncertainty = 0.01;
   scenario.gauge.zero_uncertainty = 5.0 * Pa;
   const VirtualExperiment experiment = make_virtual_experiment(scenario, 3);
-  const LevelTruth& low = experiment.levels[1];
-  const LevelTruth& high = experiment.levels.back();
+  const LevelTruth& low = experiment.truth.levels[1];
+  const LevelTruth& high = experiment.truth.levels.back();
   const double gain = (high.label - low.label) / (high.pressure - low.pressure);
   const double zero = low.label.si() - gain * low.pressure.si();
   EXPECT_NE(gain, 1.0);
   EXPECT_NE(zero, 0.0);
-  for (std::size_t i = 1; i < experiment.levels.size(); ++i) {
-    const LevelTruth& level = experiment.levels[i];
+  for (std::size_t i = 1; i < experiment.truth.levels.size(); ++i) {
+    const LevelTruth& level = experiment.truth.levels[i];
     EXPECT_NEAR(level.label.si(), gain * level.pressure.si() + zero, 1e-9);  // round-off of 50 kPa
   }
-  EXPECT_EQ(experiment.levels.front().label.si(), 0.0);
+  EXPECT_EQ(experiment.truth.levels.front().label.si(), 0.0);
 }
 
 TEST(VirtualExperiment, ScalarsAreThoseOfTheirRuns) {
@@ -148,6 +148,51 @@ TEST(VirtualExperiment, ScalarsAreThoseOfTheirRuns) {
   }
 }
 
+TEST(VirtualExperiment, ThePumpPulsesInTheMapsNotInTheTruth) {
+  Scenario scenario = tiny().without_errors();
+  scenario.levels = {Pressure{}};
+  const VirtualExperiment steady = make_virtual_experiment(scenario, 4);
+  scenario.pump.pulsation = 0.02;
+  const WallModel wall = scenario.wall_model();
+  const CoupledFlow start =
+      fill_channel(scenario.channel, wall, wall.rest(), Pressure{}, scenario.solver);
+  double square = 0.0;
+  int n = 0;
+  for (std::uint64_t seed = 0; seed < 25; ++seed) {
+    const VirtualExperiment pulsing = make_virtual_experiment(scenario, seed);
+    EXPECT_EQ(truth_csv(pulsing.truth), truth_csv(steady.truth));
+    EXPECT_EQ(pulsing.flow_csv, steady.flow_csv);
+    EXPECT_TRUE((pulsing.maps[0].map.height() == steady.maps[0].map.height()).all());
+    // From the crest back to the flow rate: slope by a difference of the steady coupled flow.
+    for (std::size_t i = 0; i < 4; ++i) {
+      const Index iy = 24, ix = 48;
+      const FlowRate q = scenario.flow_rates[i];
+      const double x = 0.5 * scenario.channel.length.si();
+      const auto at = [&](double factor) {
+        return solve_coupled(scenario.channel, scenario.fluid, wall, start, factor * q,
+                             scenario.outlet.pressure(factor * q), scenario.solver)
+            .deflection(x);
+      };
+      const double slope = (at(1.01) - at(0.99)) / 0.02 / at(1.0);
+      const double change =
+          pulsing.maps[1 + i].map.height()(iy, ix) / steady.maps[1 + i].map.height()(iy, ix) - 1.0;
+      square += std::pow(change / slope, 2);
+      ++n;
+    }
+  }
+  // Five standard errors of a variance, and 10 % for the curvature of zeta(Q) over 6 %.
+  EXPECT_NEAR(square / n / (0.02 * 0.02), 1.0, 0.1 + 5.0 * std::sqrt(2.0 / n));
+}
+
+TEST(VirtualExperiment, WithoutErrorsStatesTheTruth) {
+  const VirtualExperiment experiment = make_virtual_experiment(small_s1().without_errors(), 9);
+  for (const LevelTruth& level : experiment.truth.levels) EXPECT_EQ(level.label, level.pressure);
+  for (const RunScalars& run : experiment.scalars) {
+    EXPECT_EQ(run.transducer_reading, run.total_drop());
+  }
+  EXPECT_NE(experiment.experiment_toml.find("height = \"175.00 um\""), std::string::npos);
+}
+
 TEST(VirtualExperiment, StopsWhenAskedAndTellsItsProgress) {
   std::atomic<int> n_reports{0};
   Monitor monitor;
@@ -156,7 +201,7 @@ TEST(VirtualExperiment, StopsWhenAskedAndTellsItsProgress) {
     EXPECT_LE(fraction, 1.0);
   };
   make_virtual_experiment(tiny(), 1, 2, monitor);
-  EXPECT_EQ(n_reports, 21);
+  EXPECT_EQ(n_reports, 42);  // each is solved, then seen
   monitor.stop_requested = [] { return true; };
   EXPECT_THROW(make_virtual_experiment(tiny(), 1, 2, monitor), Interrupted);
 }

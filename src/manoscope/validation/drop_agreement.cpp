@@ -78,7 +78,7 @@ class Propagation {
   }
 
   Estimate resistance(const flow::ResistanceDrop& result, const GoodStations& good,
-                      Length height_uncertainty) const {
+                      Viscosity viscosity, const FlowUncertainty& uncertainty) const {
     Estimate drop;
     drop.value = result.drop.si();
     for (const ErrorMode& mode : state_.uncertainty.modes) {
@@ -96,7 +96,10 @@ class Propagation {
           {flow_noise(ix), "pixel noise", gradient * state_.uncertainty.independent[ix]});
     }
     drop.terms.push_back(
-        {"channel height", "channel height", result.height_gradient * height_uncertainty.si()});
+        {"channel height", "channel height", result.height_gradient * uncertainty.height.si()});
+    drop.terms.push_back(
+        {"viscosity", "viscosity", drop.value * (uncertainty.viscosity / viscosity)});
+    drop.terms.push_back({"flow rate", "flow rate", drop.value * uncertainty.flow_rate});
     return drop;
   }
 
@@ -113,8 +116,8 @@ class Propagation {
 }  // namespace
 
 DropAgreement compare_drops(const flow::Channel& channel, const flow::Fluid& fluid,
-                            FlowRate flow_rate, Length height_uncertainty, const Profile& state,
-                            const inversion::PressureReading& reading,
+                            FlowRate flow_rate, const FlowUncertainty& uncertainty,
+                            const Profile& state, const inversion::PressureReading& reading,
                             const inversion::TestSection& section) {
   MANO_ASSERT(reading.answered(section.first) && reading.answered(section.last));
   const GoodStations good = good_stations(state);
@@ -124,7 +127,7 @@ DropAgreement compare_drops(const flow::Channel& channel, const flow::Fluid& flu
   const Propagation propagation(state, reading, section);
   DropAgreement agreement;
   agreement.extracted = propagation.extracted();
-  agreement.resistance = propagation.resistance(result, good, height_uncertainty);
+  agreement.resistance = propagation.resistance(result, good, fluid.viscosity, uncertainty);
   const double variance = std::pow(agreement.extracted.standard_uncertainty(), 2) +
                           std::pow(agreement.resistance.standard_uncertainty(), 2) -
                           2.0 * covariance(agreement.extracted, agreement.resistance);

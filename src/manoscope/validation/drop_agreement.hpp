@@ -20,17 +20,27 @@ struct DropAgreement {
   double en_number = 0.0;
 };
 
+/// Standard uncertainties of what QR takes from outside the maps. 0 = taken as exact.
+struct FlowUncertainty {
+  Length height{};         ///< of the gap 2 h0
+  Viscosity viscosity{};   ///< of eta
+  double flow_rate = 0.0;  ///< of Q, relative: one error of the pump, common to all runs
+};
+
 /// Compares dp_e with Q R over the test section of one run.
 ///
 /// Source: Ozsun et al. 2013, eq. (4) and fig. 4. zeta(x) is in both: noise, plane and position of
-/// the flow map move them together, which the difference accounts for; the gap 2 h0 is in QR alone.
-/// Flow rate and viscosity are taken as exact. The formula leaves out inertia, entry and the bulged
-/// section: E_n above 1 at high flow rate may be the formula's.
+/// the flow map move them together, which the difference accounts for. The gap 2 h0, the viscosity
+/// and the flow rate are in QR alone, as the error variables "channel height", "viscosity" and
+/// "flow rate", which all runs of an experiment share. QR is proportional to eta and to Q, so that
 ///
-/// @param height_uncertainty  standard uncertainty of 2 h0.
+///   u(QR)^2 = (maps)^2 + (dQR/d(2 h0) u(2 h0))^2 + QR^2 ((u(eta)/eta)^2 + (u(Q)/Q)^2)
+///
+/// The formula leaves out inertia, entry and the bulged section: E_n above 1 at high flow rate may
+/// be the formula's.
 DropAgreement compare_drops(const flow::Channel& channel, const flow::Fluid& fluid,
-                            FlowRate flow_rate, Length height_uncertainty, const Profile& state,
-                            const inversion::PressureReading& reading,
+                            FlowRate flow_rate, const FlowUncertainty& uncertainty,
+                            const Profile& state, const inversion::PressureReading& reading,
                             const inversion::TestSection& section);
 
 /// Channel-averaged Reynolds number Re_x = 2 Q / (nu (w + h)) (Ozsun et al. 2013, table I), the

@@ -186,7 +186,8 @@ MonteCarlo run_trials(Trial trial, int n_trials, const flow::Channel& channel = 
     const Profile state = trial.state();
     flow::Channel stated = channel;
     stated.height += RandomStream(trial.seed, "height").normal() * height_uncertainty;
-    const auto found = compare(trial.reading(state), state, flow_rate, stated, height_uncertainty);
+    const auto found =
+        compare(trial.reading(state), state, flow_rate, stated, {height_uncertainty});
     const double u_extracted = found.extracted.standard_uncertainty();
     const double u_resistance = found.resistance.standard_uncertainty();
     const double difference = found.extracted.value - found.resistance.value;
@@ -237,15 +238,15 @@ TEST(CompareDrops, WithoutAnyUncertaintyHasNoVerdict) {
   exact.level_errors = exact.flow_errors = {0.0, 0.0, 0.0, 0.0};
   exact.label = 0.0;
   const Profile state = exact.state();
-  const auto found = compare_drops(kChannel, kWater, 10.0 * mL_per_min, Length{}, state,
-                                   exact.reading(state), kSection);
+  const auto found =
+      compare_drops(kChannel, kWater, 10.0 * mL_per_min, {}, state, exact.reading(state), kSection);
   // What is left is the doubt of interpolation alone; without it too there is no number.
   EXPECT_GT(std::abs(found.extracted.value - found.resistance.value), 1e3);
   EXPECT_GT(found.en_number, 1.0);
   PressureReading certain = exact.reading(state);
   certain.uncertainty.modes.clear();
   const auto verdict =
-      compare_drops(kChannel, kWater, 10.0 * mL_per_min, Length{}, state, certain, kSection);
+      compare_drops(kChannel, kWater, 10.0 * mL_per_min, {}, state, certain, kSection);
   EXPECT_TRUE(std::isnan(verdict.en_number)) << verdict.en_number;
 }
 

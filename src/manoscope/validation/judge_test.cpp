@@ -36,6 +36,8 @@ TEST(JudgeReading, CountsErrorsPullsAndCoverageOfKnownNumbers) {
   EXPECT_DOUBLE_EQ(found.pull_mean, 1.5 / 4.0);
   EXPECT_DOUBLE_EQ(found.pull_width, std::sqrt(4.25 / 4.0 - 0.375 * 0.375));
   EXPECT_DOUBLE_EQ(found.coverage, 0.75);  // an end of the interval belongs to it
+  EXPECT_DOUBLE_EQ(found.pull_rms, std::sqrt(4.25 / 4.0));
+  EXPECT_DOUBLE_EQ(found.coverage_68, 0.75);  // all but the first
 }
 
 TEST(JudgeReading, LeavesOutSilentStationsWhateverTheyHold) {
@@ -85,7 +87,43 @@ TEST(JudgeReading, FindsTrueErrorBarsTrue) {
   // Sampling errors of 20000 independent pulls: 0.0071, 0.0050 and 0.0015; four of each.
   EXPECT_NEAR(found.pull_mean, 0.0, 4.0 * 0.0071);
   EXPECT_NEAR(found.pull_width, 1.0, 4.0 * 0.0050);
+  EXPECT_NEAR(found.pull_rms, 1.0, 4.0 * 0.0050);
   EXPECT_NEAR(found.coverage, 0.95, 4.0 * 0.0015);
+  EXPECT_NEAR(found.coverage_68, 0.6827, 4.0 * 0.0033);
+}
+
+TEST(AveragePulls, WeighsEachRunTheSameAndLeavesOutTheSilent) {
+  Judgement one, other, silent;
+  one.n_answered = 10;
+  one.pull_mean = one.pull_rms = 2.0;
+  other.n_answered = 1000;
+  other.pull_mean = -1.0;
+  other.pull_rms = 1.0;
+  other.coverage = other.coverage_68 = 1.0;
+  silent.pull_mean = 77.0;
+  const PullSummary found = average_pulls({one, silent, other});
+  EXPECT_EQ(found.n_runs, 2);
+  EXPECT_DOUBLE_EQ(found.pull_mean, 0.5);
+  EXPECT_DOUBLE_EQ(found.pull_rms, std::sqrt(2.5));
+  EXPECT_DOUBLE_EQ(found.coverage, 0.5);
+  EXPECT_DOUBLE_EQ(found.coverage_68, 0.5);
+  EXPECT_EQ(average_pulls({}).n_runs, 0);
+}
+
+TEST(AveragePulls, SeesTheOffsetThatTheStationsOfARunShare) {
+  // Fifty runs of 100 stations whose error is all one shared offset of width 1.
+  RandomStream stream(6, "judge");
+  std::vector<Judgement> runs;
+  double width = 0.0;
+  for (int r = 0; r < 50; ++r) {
+    const Array1 truth = Array1::Zero(100), u = Array1::Ones(100);
+    const Array1 p = Array1::Constant(100, stream.normal());
+    runs.push_back(judge_reading(all(100), p, u, p - 1.96 * u, p + 1.96 * u, truth));
+    width += runs.back().pull_width / 50.0;
+  }
+  const PullSummary found = average_pulls(runs);
+  EXPECT_LT(width, 1e-7);                       // each run alone seems sure of itself
+  EXPECT_NEAR(found.pull_rms, 1.0, 4.0 * 0.1);  // 1/sqrt(2 * 50)
 }
 
 }  // namespace

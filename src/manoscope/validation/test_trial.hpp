@@ -84,7 +84,10 @@ struct Trial {
       levels.push_back(
           test::level(name, read, vented ? 0.0 : label, map(exact, name, level_errors)));
     }
-    return calibration::fit_curves(levels);
+    // Each label an error variable of its own, so that it can be told in the drops.
+    calibration::FitCurvesOptions options;
+    options.joint_labels = false;
+    return calibration::fit_curves(levels, options);
   }
   Profile state() const {
     return map(test::exact_profile(x, [&](double at) { return wall.zeta(at, truth(at)); }), "flow",
@@ -97,8 +100,8 @@ struct Trial {
 
 inline DropAgreement compare(const PressureReading& reading, const Profile& state,
                              FlowRate flow_rate, const flow::Channel& channel = kChannel,
-                             Length height_uncertainty = kHeightUncertainty) {
-  return compare_drops(channel, kWater, flow_rate, height_uncertainty, state, reading, kSection);
+                             const FlowUncertainty& uncertainty = {kHeightUncertainty}) {
+  return compare_drops(channel, kWater, flow_rate, uncertainty, state, reading, kSection);
 }
 
 }  // namespace manoscope::validation

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/wall/plate_strip.hpp"
 
 namespace manoscope::wall {
 
@@ -14,28 +15,14 @@ void ClampedWall::validate() const {
   const auto refuse = [](const std::string& found, const char* mend) {
     throw InputError("clamped wall", found, mend);
   };
-  const auto need_positive = [&](const char* name, double value, double scale, const char* unit,
-                                 const char* mend) {
-    if (!(value > 0.0) || !std::isfinite(value)) {
-      refuse(fmt::format("{} is {:g} {}", name, value / scale, unit), mend);
-    }
-  };
-  need_positive("length", length.si(), 1e-3, "mm", "Give a positive length such as \"15.5 mm\"");
-  need_positive("width", width.si(), 1e-3, "mm", "Give a positive width such as \"1.7 mm\"");
-  need_positive("thickness", thickness.si(), 1e-6, "um",
-                "Give a positive thickness such as \"0.2 um\"");
-  need_positive("youngs_modulus", youngs_modulus.si(), 1e9, "GPa",
-                "Give a positive modulus such as \"250 GPa\"");
-  if (!(poisson_ratio > -1.0 && poisson_ratio <= 0.5)) {
-    refuse(fmt::format("poisson_ratio is {:g}", poisson_ratio), "Give a value in (-1, 0.5]");
+  if (!(length.si() > 0.0) || !std::isfinite(length.si())) {
+    refuse(fmt::format("length is {:g} mm", length.in(mm)),
+           "Give a positive length such as \"15.5 mm\"");
   }
-  if (!std::isfinite(prestress.si()) || std::abs(prestress.si()) > youngs_modulus.si()) {
+  section().validate("clamped wall");
+  if (std::abs(prestress.si()) > youngs_modulus.si()) {
     refuse(fmt::format("prestress is {:g} MPa", prestress.in(MPa)),
-           "Give a finite stress well below Young's modulus, tension positive");
-  }
-  if (!(shear_correction >= 0.0 && shear_correction <= 1.0)) {
-    refuse(fmt::format("shear_correction is {:g}", shear_correction),
-           "Give a value in (0, 1] such as 0.8333, or 0 for a wall rigid in shear");
+           "Give a stress well below Young's modulus, tension positive");
   }
   if (!std::isfinite(preload.load.si()) || !(std::abs(preload.lopsidedness) <= 2.0)) {
     refuse(fmt::format("preload is {:g} Pa with lopsidedness {:g}", preload.load.si(),
@@ -47,11 +34,6 @@ void ClampedWall::validate() const {
                        initial_shape.crest.in(um), initial_shape.lopsidedness),
            "Give a finite crest and a lopsidedness in [-2, 2]");
   }
-}
-
-double ClampedWall::bending_stiffness() const {
-  const double t = thickness.si();
-  return youngs_modulus.si() * t * t * t / (12.0 * (1.0 - poisson_ratio * poisson_ratio));
 }
 
 double ClampedWall::edge_layer(Pressure pressure) const {
@@ -70,6 +52,15 @@ double ClampedWall::edge_layer(Pressure pressure) const {
   }
   const double n_mid = tension + stretch * 2.0 / 3.0 * (high / a) * (high / a);
   return n_mid > 4.0 * bending / (a * a) ? std::sqrt(bending / n_mid) : 0.5 * a;
+}
+
+Pressure ClampedWall::largest_pressure() const {
+  const Length shorter = std::min(width, length), longer = std::max(width, length);
+  WallSection across = section();
+  across.width = shorter;
+  across.prestress = std::max(prestress, Pressure{});
+  const double short_ends = 1.0 + std::pow(shorter / longer, 4);
+  return short_ends * PlateStrip(across).pressure(kLargestRise * 0.5 * shorter);
 }
 
 WallLoad WallLoad::uniform(Pressure pressure) {
@@ -104,6 +95,17 @@ WallLoad WallLoad::field(std::function<double(double, double)> pressure) {
   WallLoad load;
   load.field_ = std::move(pressure);
   return load;
+}
+
+WallLoad WallLoad::plus(double share, const WallLoad& other) const {
+  const bool lines = !field_ && !other.field_;
+  if (lines && other.x_.size() == 1) return along(x_, pressure_ + share * other.pressure_(0));
+  if (lines && x_.size() == 1) return along(other.x_, pressure_(0) + share * other.pressure_);
+  if (!lines || x_.size() != other.x_.size() || (x_ != other.x_).any()) {
+    throw InputError("wall load", "two loads at different stations cannot be added",
+                     "Give both at the same stations, or one of them uniform");
+  }
+  return along(x_, pressure_ + share * other.pressure_);
 }
 
 }  // namespace manoscope::wall

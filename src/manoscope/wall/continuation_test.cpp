@@ -41,6 +41,39 @@ TEST(FollowPressure, OfATautWallIsOneBranchOfTheSameStatesAsDirectSolutions) {
   }
 }
 
+TEST(FollowLoad, TakesAChangeOfRoundOffInOneStep) {
+  const ClampedWall soft{10.0 * mm, 1.0 * mm, 100.0 * um, 1.0 * MPa, 0.49};
+  int n_factorisations = 0;
+  Monitor count;
+  count.stop_requested = [&] {
+    ++n_factorisations;
+    return false;
+  };
+  const FopplVonKarman wall(soft, coarse(), count);
+  Array1 x(3), p(3);
+  x << 0.0, 5e-3, 10e-3;
+  p << 1639.29, 900.0, 0.0;
+  const WallState start = wall.equilibrium(WallLoad::along(x, p));
+  n_factorisations = 0;
+  const auto from = WallLoad::along(x, p), to = WallLoad::along(x, p * (1.0 + 4e-16));
+  const FollowedLoad followed = follow_load(wall, start, from, to);
+  // The work of such a change is noise: it must not be halved down to the resolution a thousand
+  // times over.
+  EXPECT_LT(n_factorisations, 5);
+  EXPECT_TRUE(followed.ends.empty());
+  EXPECT_NEAR(followed.state.volume() / start.volume(), 1.0, 1e-9);
+}
+
+TEST(FollowLoad, IsInterruptedWithinASolution) {
+  int left = 7;
+  Monitor stop;
+  stop.stop_requested = [&] { return left-- <= 0; };
+  const FopplVonKarman wall(buckled(3.0), coarse(), stop);
+  EXPECT_THROW(follow_pressure(wall, wall.unloaded(), Array1::LinSpaced(20, 0.0, 3e3)),
+               Interrupted);
+  EXPECT_EQ(left, -1);  // nothing was solved after
+}
+
 TEST(FollowPressure, OfABuckledWallSnapsThroughUpwardAndBackAtAnotherPressure) {
   const FopplVonKarman wall(buckled(3.0), coarse());
   const WallState down = wall.equilibrium(load(0.0));

@@ -41,7 +41,7 @@ FvkCoefficients coefficients(const ClampedWall& wall) {
   const double nu = wall.poisson_ratio, slenderness = 0.5 * wall.width.si() / wall.thickness.si();
   const double square = slenderness * slenderness;
   return {nu, wall.prestress.si() * (1.0 - nu * nu) / wall.youngs_modulus.si() * square,
-          wall.shear_correction * 0.5 * (1.0 - nu) * square};
+          wall.shear_correction * 0.5 * (1.0 - nu) * square, wall.sliding_edges};
 }
 
 /// Nodal values of the initial shape in units of t.
@@ -152,8 +152,9 @@ double WallState::volume() const {
          model.line_functional(whole.col(0)).dot(q_);
 }
 
-FopplVonKarman::FopplVonKarman(const ClampedWall& wall, const FopplVonKarmanOptions& options)
-    : wall_(wall), options_(options) {
+FopplVonKarman::FopplVonKarman(const ClampedWall& wall, const FopplVonKarmanOptions& options,
+                               Monitor monitor)
+    : wall_(wall), options_(options), monitor_(std::move(monitor)) {
   wall.validate();
   options.validate();
   const Index half_x = std::max<Index>(4, options.n_cells_x / 4 * 2);
@@ -224,7 +225,7 @@ WallState FopplVonKarman::equilibrium(const WallLoad& load) const {
     FvkModel model = coarse_->model;
     model.set_prestress(model.coefficients().prestress + lent);
     const Vector& shape = model.initial_shape();
-    const Vector q = solve_equilibrium(model, coarse_->norm, coarse_load, shape, rough).q;
+    const Vector q = solve_equilibrium(model, coarse_->norm, coarse_load, shape, rough, monitor_).q;
     // The difference to the shape is sampled, so that the shape itself stays the fine grid's.
     return Vector(fine_->model.initial_shape() + fine_->model.prolong(model, q - shape));
   };
@@ -241,7 +242,8 @@ WallState FopplVonKarman::equilibrium(const WallLoad& load) const {
 
   WallState start = unloaded();
   start.q_ = from_coarse(0.0);
-  Equilibrium found = solve_equilibrium(fine_->model, fine_->norm, fine_load, start.q_, near);
+  Equilibrium found =
+      solve_equilibrium(fine_->model, fine_->norm, fine_load, start.q_, near, monitor_);
   if (stands(found)) return accept(found, 0);
   if (wall_.prestress.si() >= 0.0) {
     // Sampled strains are off by more than the bending of a thin slack wall can bear, and its
@@ -252,7 +254,7 @@ WallState FopplVonKarman::equilibrium(const WallLoad& load) const {
     FvkModel model = fine_->model;
     for (const double share : {0.3, 0.1, 0.03, 0.015, 0.007, 0.003, 0.0}) {
       model.set_prestress(fine_->model.coefficients().prestress + share * tension);
-      found = solve_equilibrium(model, fine_->norm, fine_load, q, near);
+      found = solve_equilibrium(model, fine_->norm, fine_load, q, near, monitor_);
       if (!stands(found)) break;
       if (share == 0.0) return accept(found, n_steps);
       n_steps += found.iterations;
@@ -267,8 +269,8 @@ WallState FopplVonKarman::equilibrium(const WallLoad& load, const WallState& sta
   NewtonOptions newton;
   newton.tolerance = options_.tolerance;
   newton.max_iterations = options_.max_iterations;
-  Equilibrium found =
-      solve_equilibrium(fine_->model, fine_->norm, scaled_load(*fine_, load), start.q_, newton);
+  Equilibrium found = solve_equilibrium(fine_->model, fine_->norm, scaled_load(*fine_, load),
+                                        start.q_, newton, monitor_);
   if (!found.converged) {
     throw InputError(
         kWhere,

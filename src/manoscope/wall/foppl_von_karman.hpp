@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "manoscope/core/monitor.hpp"
 #include "manoscope/wall/clamped_wall.hpp"
 
 namespace manoscope::wall {
@@ -62,7 +63,7 @@ class WallState {
 ///   D lap^2 (zeta - zeta0) - div(N grad zeta) = p - P,   div N = 0,
 ///   N = s0 t I + E t/(1 - nu^2) ((1 - nu) e + nu tr(e) I),
 ///   e = sym grad(u) + (grad zeta grad zeta - grad zeta0 grad zeta0)/2,
-///   zeta = 0, grad zeta = 0, u = 0 at the edges.
+///   zeta = 0, grad zeta = 0, u = 0 at the edges (sliding edges: only the part of u across them).
 ///
 /// With a shear correction kappa the deflection is zeta = b + s, s sheared by kappa G t grad s and
 /// held at the edges, b bent and clamped: for a strip this is Timoshenko's theory, and adds
@@ -72,17 +73,21 @@ class WallState {
 /// Bogner-Fox-Schmit (bicubic Hermite) elements on a graded grid and Newton's method with the
 /// exact tangent. The deflection converges with the fourth power of the cell size.
 ///
-/// Validity: shallow (zeta <= 0.2 a), linear elastic, pressure normal to the plane (not
-/// following the wall's slope).
+/// Validity: shallow (zeta <= 0.2 a, at most kLargestRise a), linear elastic, pressure normal to
+/// the plane (not following the wall's slope).
 ///
 /// Same bytes for the same input: everything runs on the calling thread.
 class FopplVonKarman {
  public:
+  /// @param monitor  asked before every factorisation of every solution: a solution that is to
+  ///                 stop throws Interrupted.
   /// @throws InputError if a property or option is out of range.
-  explicit FopplVonKarman(const ClampedWall& wall, const FopplVonKarmanOptions& options = {});
+  explicit FopplVonKarman(const ClampedWall& wall, const FopplVonKarmanOptions& options = {},
+                          Monitor monitor = {});
 
   const ClampedWall& wall() const { return wall_; }
   const FopplVonKarmanOptions& options() const { return options_; }
+  const Monitor& monitor() const { return monitor_; }
 
   /// The wall at its initial shape; not an equilibrium unless nothing acts on it.
   WallState unloaded() const;
@@ -97,8 +102,10 @@ class FopplVonKarman {
   std::unique_ptr<WallState> nearby_equilibrium(const WallLoad& load, const WallState& start) const;
   /// start + step * rate: a state predicted along a branch.
   WallState predicted(const WallState& start, double step, const Eigen::VectorXd& rate) const;
-  /// d(unknowns)/d(factor) at an equilibrium when a load is multiplied by a factor.
+  /// d(unknowns)/d(share) at an equilibrium when a share of a load comes on top of the present one.
   Eigen::VectorXd rate(const WallState& state, const WallLoad& load) const;
+  /// Work of a load on the way from the plane of the rim to a state, int p zeta dx dz, J.
+  double work(const WallState& state, const WallLoad& load) const;
 
   /// Influence operator d zeta_avg(x_i) / d p(x_j), m/Pa, at an equilibrium: (n, n).
   ///
@@ -115,10 +122,12 @@ class FopplVonKarman {
 
  private:
   Eigen::VectorXd scaled_load(const WallState::Grid& grid, const WallLoad& load) const;
+  Eigen::VectorXd scaled_pressure(const WallLoad& load) const;  ///< the preload left out
   WallState state_at(const std::shared_ptr<const WallState::Grid>& grid) const;
 
   ClampedWall wall_;
   FopplVonKarmanOptions options_;
+  Monitor monitor_;
   std::shared_ptr<const WallState::Grid> coarse_, fine_;
 };
 

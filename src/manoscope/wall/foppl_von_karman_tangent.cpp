@@ -28,8 +28,8 @@ std::unique_ptr<WallState> FopplVonKarman::nearby_equilibrium(const WallLoad& lo
   newton.tolerance = options_.tolerance;
   newton.max_iterations = 8;
   newton.stable = false;
-  Equilibrium found =
-      solve_equilibrium(fine_->model, fine_->norm, scaled_load(*fine_, load), start.q_, newton);
+  Equilibrium found = solve_equilibrium(fine_->model, fine_->norm, scaled_load(*fine_, load),
+                                        start.q_, newton, monitor_);
   if (!found.converged) return nullptr;
   auto state = std::make_unique<WallState>(start);
   state->q_ = std::move(found.q);
@@ -45,9 +45,16 @@ WallState FopplVonKarman::predicted(const WallState& start, double step, const V
   return state;
 }
 
+Vector FopplVonKarman::scaled_pressure(const WallLoad& load) const {
+  return scaled_load(*fine_, load) - scaled_load(*fine_, WallLoad::uniform(Pressure{}));
+}
+
 Vector FopplVonKarman::rate(const WallState& state, const WallLoad& load) const {
-  const Vector held = scaled_load(*fine_, WallLoad::uniform(Pressure{}));
-  return tangent_of(fine_->model, state.q_).solve(scaled_load(*fine_, load) - held);
+  return tangent_of(fine_->model, state.q_).solve(scaled_pressure(load));
+}
+
+double FopplVonKarman::work(const WallState& state, const WallLoad& load) const {
+  return fine_->halves * fine_->energy * scaled_pressure(load).dot(state.q_);
 }
 
 Matrix FopplVonKarman::influence(const WallState& state, const Array1& stations) const {

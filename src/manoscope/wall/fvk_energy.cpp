@@ -5,8 +5,15 @@
 
 namespace manoscope::wall {
 
+template <class Visit>
+void FvkModel::for_each_cell(const Visit& visit) const {
+  for (Index ix = 0; ix < x_.n_cells(); ++ix) {
+    for (Index iz = 0; iz < z_.n_cells(); ++iz) visit(cell(ix, iz), cell_unknowns(ix, iz));
+  }
+}
+
 FvkModel::Stretch FvkModel::stretch(const Vector& q, const Cell& at,
-                                    const std::array<Index, 64>& indices) const {
+                                    const Unknowns& indices) const {
   const auto slope = [](const Points& functions, const Values& values) -> Values {
     return (functions * values.matrix()).array();
   };
@@ -31,25 +38,20 @@ FvkModel::Stretch FvkModel::stretch(const Vector& q, const Cell& at,
 double FvkModel::energy(const Vector& q) const {
   double sum = 0.0;
   const double s0 = coefficients_.prestress;
-  for (Index ix = 0; ix < x_.n_cells(); ++ix) {
-    for (Index iz = 0; iz < z_.n_cells(); ++iz) {
-      const Cell at = cell(ix, iz);
-      const auto indices = cell_unknowns(ix, iz);
-      const Stretch now = stretch(q, at, indices);
-      sum += (at.weight * (0.5 * (now.e_x * now.n_x + now.e_z * now.n_z + now.g * now.n_xz) +
-                           s0 * (now.e_x + now.e_z)))
-                 .sum();
-      const Values bent = gather(q, indices, b) - gather(initial_shape_, indices, b);
-      sum += 0.5 * bent.matrix().dot(bending_[ix * z_.n_cells() + iz] * bent.matrix());
-      if (n_fields_ > s) {
-        const Values sheared = gather(q, indices, s);
-        const Values slope_x = (at.x * sheared.matrix()).array();
-        const Values slope_z = (at.z * sheared.matrix()).array();
-        sum +=
-            0.5 * coefficients_.shear * (at.weight * (slope_x.square() + slope_z.square())).sum();
-      }
+  for_each_cell([&](const Cell& at, const Unknowns& indices) {
+    const Stretch now = stretch(q, at, indices);
+    sum += (at.weight * (0.5 * (now.e_x * now.n_x + now.e_z * now.n_z + now.g * now.n_xz) +
+                         s0 * (now.e_x + now.e_z)))
+               .sum();
+    const Values bent = gather(q, indices, b) - gather(initial_shape_, indices, b);
+    sum += 0.5 * bent.matrix().dot(bending_[at.index] * bent.matrix());
+    if (n_fields_ > s) {
+      const Values sheared = gather(q, indices, s);
+      const Values slope_x = (at.x * sheared.matrix()).array();
+      const Values slope_z = (at.z * sheared.matrix()).array();
+      sum += 0.5 * coefficients_.shear * (at.weight * (slope_x.square() + slope_z.square())).sum();
     }
-  }
+  });
   return sum;
 }
 
@@ -57,43 +59,39 @@ FvkModel::Vector FvkModel::gradient(const Vector& q, Vector* magnitude) const {
   Vector made = Vector::Zero(n_unknowns());
   if (magnitude != nullptr) magnitude->setZero(n_unknowns());
   const double s0 = coefficients_.prestress;
-  for (Index ix = 0; ix < x_.n_cells(); ++ix) {
-    for (Index iz = 0; iz < z_.n_cells(); ++iz) {
-      const Cell at = cell(ix, iz);
-      const auto indices = cell_unknowns(ix, iz);
-      const Stretch now = stretch(q, at, indices);
-      const auto divergence = [&](const Values& flux_x, const Values& flux_z) -> Values {
-        return (at.x.transpose() * (at.weight * flux_x).matrix() +
-                at.z.transpose() * (at.weight * flux_z).matrix())
-            .array();
-      };
-      const auto collect = [&](Field field, const Values& part) {
-        for (int k = 0; k < 16; ++k) {
-          const Index index = indices[16 * field + k];
-          if (index < 0) continue;
-          made(index) += part(k);
-          if (magnitude != nullptr) (*magnitude)(index) += std::abs(part(k));
-        }
-      };
-      // The uniform prestress does no work in-plane: u = v = 0 all round.
-      collect(u, divergence(now.n_x, now.n_xz));
-      collect(v, divergence(now.n_xz, now.n_z));
-      const Values tension = divergence((now.n_x + s0) * now.w_x + now.n_xz * now.w_z,
-                                        (now.n_z + s0) * now.w_z + now.n_xz * now.w_x);
-      const Values bent = gather(q, indices, b) - gather(initial_shape_, indices, b);
-      collect(b, tension + (bending_[ix * z_.n_cells() + iz] * bent.matrix()).array());
-      if (n_fields_ > s) {
-        const Values sheared = gather(q, indices, s);
-        const Values slope_x = (at.x * sheared.matrix()).array();
-        const Values slope_z = (at.z * sheared.matrix()).array();
-        collect(s, tension + coefficients_.shear * divergence(slope_x, slope_z));
+  for_each_cell([&](const Cell& at, const Unknowns& indices) {
+    const Stretch now = stretch(q, at, indices);
+    const auto divergence = [&](const Values& flux_x, const Values& flux_z) -> Values {
+      return (at.x.transpose() * (at.weight * flux_x).matrix() +
+              at.z.transpose() * (at.weight * flux_z).matrix())
+          .array();
+    };
+    const auto collect = [&](Field field, const Values& part) {
+      for (int k = 0; k < 16; ++k) {
+        const Index index = indices[16 * field + k];
+        if (index < 0) continue;
+        made(index) += part(k);
+        if (magnitude != nullptr) (*magnitude)(index) += std::abs(part(k));
       }
+    };
+    // The uniform prestress does no work in-plane: no edge moves across itself.
+    collect(u, divergence(now.n_x, now.n_xz));
+    collect(v, divergence(now.n_xz, now.n_z));
+    const Values tension = divergence((now.n_x + s0) * now.w_x + now.n_xz * now.w_z,
+                                      (now.n_z + s0) * now.w_z + now.n_xz * now.w_x);
+    const Values bent = gather(q, indices, b) - gather(initial_shape_, indices, b);
+    collect(b, tension + (bending_[at.index] * bent.matrix()).array());
+    if (n_fields_ > s) {
+      const Values sheared = gather(q, indices, s);
+      const Values slope_x = (at.x * sheared.matrix()).array();
+      const Values slope_z = (at.z * sheared.matrix()).array();
+      collect(s, tension + coefficients_.shear * divergence(slope_x, slope_z));
     }
-  }
+  });
   return made;
 }
 
-void FvkModel::scatter(Index ix, const std::array<Index, 64>& indices, Field row, Field column,
+void FvkModel::scatter(Index ix, const Unknowns& indices, Field row, Field column,
                        const Points& block, BlockTridiagonal& matrix) const {
   // Functions 0 to 7 belong to node column ix, 8 to 15 to ix + 1; block (ix, ix + 1) is implied.
   for (int i = 0; i < 16; ++i) {
@@ -116,65 +114,57 @@ void FvkModel::scatter(Index ix, const std::array<Index, 64>& indices, Field row
 void FvkModel::add_hessian(const Vector& q, BlockTridiagonal& hessian) const {
   const double nu = coefficients_.poisson_ratio, rest = 0.5 * (1.0 - nu);
   const double s0 = coefficients_.prestress;
-  for (Index ix = 0; ix < x_.n_cells(); ++ix) {
-    for (Index iz = 0; iz < z_.n_cells(); ++iz) {
-      const Cell at = cell(ix, iz);
-      const auto indices = cell_unknowns(ix, iz);
-      const Stretch now = stretch(q, at, indices);
-      const auto pair = [&](Field row, Field column, const Points& block) {
-        scatter(ix, indices, row, column, block, hessian);
-        if (row != column) scatter(ix, indices, column, row, block.transpose(), hessian);
-      };
-      const Points x_t = at.x.transpose(), z_t = at.z.transpose();
-      const auto scaled = [&](const Points& functions, const Values& by) -> Points {
-        return (at.weight * by).matrix().asDiagonal() * functions;
-      };
-      const Values one = Values::Ones();
-      const Points x1 = scaled(at.x, one), z1 = scaled(at.z, one);
-      const Points xx = x_t * x1, zz = z_t * z1, xz = x_t * z1;
-      pair(u, u, xx + rest * zz);
-      pair(v, v, zz + rest * xx);
-      pair(u, v, nu * xz + rest * xz.transpose());
+  for_each_cell([&](const Cell& at, const Unknowns& indices) {
+    const Stretch now = stretch(q, at, indices);
+    const auto pair = [&](Field row, Field column, const Points& block) {
+      scatter(at.ix, indices, row, column, block, hessian);
+      if (row != column) scatter(at.ix, indices, column, row, block.transpose(), hessian);
+    };
+    const Points x_t = at.x.transpose(), z_t = at.z.transpose();
+    const auto scaled = [&](const Points& functions, const Values& by) -> Points {
+      return (at.weight * by).matrix().asDiagonal() * functions;
+    };
+    const Values one = Values::Ones();
+    const Points x1 = scaled(at.x, one), z1 = scaled(at.z, one);
+    const Points xx = x_t * x1, zz = z_t * z1, xz = x_t * z1;
+    pair(u, u, xx + rest * zz);
+    pair(v, v, zz + rest * xx);
+    pair(u, v, nu * xz + rest * xz.transpose());
 
-      // Derivatives of the three forces with respect to the deflection.
-      const Points n_x = scaled(at.x, now.w_x) + scaled(at.z, nu * now.w_z);
-      const Points n_z = scaled(at.x, nu * now.w_x) + scaled(at.z, now.w_z);
-      const Points n_xz = scaled(at.x, rest * now.w_z) + scaled(at.z, rest * now.w_x);
-      const Points along = x_t * n_x + z_t * n_xz, across = x_t * n_xz + z_t * n_z;
+    // Derivatives of the three forces with respect to the deflection.
+    const Points n_x = scaled(at.x, now.w_x) + scaled(at.z, nu * now.w_z);
+    const Points n_z = scaled(at.x, nu * now.w_x) + scaled(at.z, now.w_z);
+    const Points n_xz = scaled(at.x, rest * now.w_z) + scaled(at.z, rest * now.w_x);
+    const Points along = x_t * n_x + z_t * n_xz, across = x_t * n_xz + z_t * n_z;
 
-      const Values a_xx = now.n_x + s0 + now.w_x.square() + rest * now.w_z.square();
-      const Values a_xz = now.n_xz + (nu + rest) * now.w_x * now.w_z;
-      const Values a_zz = now.n_z + s0 + now.w_z.square() + rest * now.w_x.square();
-      const Points tension = x_t * (scaled(at.x, a_xx) + scaled(at.z, a_xz)) +
-                             z_t * (scaled(at.x, a_xz) + scaled(at.z, a_zz));
-      pair(u, b, along);
-      pair(v, b, across);
-      pair(b, b, tension + bending_[ix * z_.n_cells() + iz]);
-      if (n_fields_ > s) {
-        pair(u, s, along);
-        pair(v, s, across);
-        pair(b, s, tension);
-        pair(s, s, tension + coefficients_.shear * (xx + zz));
-      }
+    const Values a_xx = now.n_x + s0 + now.w_x.square() + rest * now.w_z.square();
+    const Values a_xz = now.n_xz + (nu + rest) * now.w_x * now.w_z;
+    const Values a_zz = now.n_z + s0 + now.w_z.square() + rest * now.w_x.square();
+    const Points tension = x_t * (scaled(at.x, a_xx) + scaled(at.z, a_xz)) +
+                           z_t * (scaled(at.x, a_xz) + scaled(at.z, a_zz));
+    pair(u, b, along);
+    pair(v, b, across);
+    pair(b, b, tension + bending_[at.index]);
+    if (n_fields_ > s) {
+      pair(u, s, along);
+      pair(v, s, across);
+      pair(b, s, tension);
+      pair(s, s, tension + coefficients_.shear * (xx + zz));
     }
-  }
+  });
 }
 
 void FvkModel::add_geometric_stiffness(BlockTridiagonal& matrix) const {
-  for (Index ix = 0; ix < x_.n_cells(); ++ix) {
-    for (Index iz = 0; iz < z_.n_cells(); ++iz) {
-      const Cell at = cell(ix, iz);
-      const auto indices = cell_unknowns(ix, iz);
-      const auto weight = at.weight.matrix().asDiagonal();
-      const Points laplacian =
-          at.x.transpose() * (weight * at.x) + at.z.transpose() * (weight * at.z);
-      for (Index row = b; row < n_fields_; ++row) {
-        for (Index column = b; column < n_fields_; ++column) {
-          scatter(ix, indices, Field(row), Field(column), laplacian, matrix);
-        }
+  for_each_cell([&](const Cell& at, const Unknowns& indices) {
+    const auto weight = at.weight.matrix().asDiagonal();
+    const Points laplacian =
+        at.x.transpose() * (weight * at.x) + at.z.transpose() * (weight * at.z);
+    for (Index row = b; row < n_fields_; ++row) {
+      for (Index column = b; column < n_fields_; ++column) {
+        scatter(at.ix, indices, Field(row), Field(column), laplacian, matrix);
       }
     }
-  }
+  });
 }
 
 }  // namespace manoscope::wall

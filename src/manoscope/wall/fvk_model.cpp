@@ -47,7 +47,9 @@ FvkModel::FvkModel(HermiteAxis x, HermiteAxis z, FvkCoefficients coefficients, b
           if (field == b) {
             held = x_edge || z_edge;
           } else {
-            held = (x_edge && !x_slope) || (z_edge && !z_slope);
+            const bool holds_x = !coefficients.sliding_edges || field != v;
+            const bool holds_z = !coefficients.sliding_edges || field != u;
+            held = (x_edge && holds_x && !x_slope) || (z_edge && holds_z && !z_slope);
           }
           if (mirror) held = held || (z_slope != (field == v));
           if (!held) unknowns_[((ix * z_.n_nodes() + iz) * n_fields_ + field) * 4 + kind] = next++;
@@ -98,6 +100,8 @@ FvkModel::Points FvkModel::products(const HermiteValues* along_x, const HermiteV
 
 FvkModel::Cell FvkModel::cell(Index ix, Index iz) const {
   Cell made;
+  made.ix = ix;
+  made.index = ix * z_.n_cells() + iz;
   for (int px = 0; px < 4; ++px) {
     for (int pz = 0; pz < 4; ++pz) {
       made.weight(4 * px + pz) = kWeight4[px] * kWeight4[pz] * x_.size(ix) * z_.size(iz);
@@ -121,8 +125,8 @@ FvkModel::Points FvkModel::bending(Index ix, Index iz) const {
          12.0;
 }
 
-std::array<Index, 64> FvkModel::cell_unknowns(Index ix, Index iz) const {
-  std::array<Index, 64> indices;
+FvkModel::Unknowns FvkModel::cell_unknowns(Index ix, Index iz) const {
+  Unknowns indices;
   indices.fill(-1);
   for (Index field = 0; field < n_fields_; ++field) {
     for (int fx = 0; fx < 4; ++fx) {
@@ -135,8 +139,7 @@ std::array<Index, 64> FvkModel::cell_unknowns(Index ix, Index iz) const {
   return indices;
 }
 
-FvkModel::Values FvkModel::gather(const Vector& q, const std::array<Index, 64>& indices,
-                                  Field field) {
+FvkModel::Values FvkModel::gather(const Vector& q, const Unknowns& indices, Field field) {
   Values values;
   for (int k = 0; k < 16; ++k) {
     const Index index = indices[16 * field + k];

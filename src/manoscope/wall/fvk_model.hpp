@@ -15,6 +15,8 @@ struct FvkCoefficients {
   double poisson_ratio = 0.0;
   double prestress = 0.0;  ///< s0 (1 - nu^2)/E (a/t)^2
   double shear = 0.0;      ///< kappa (1 - nu)/2 (a/t)^2; 0 = rigid in shear
+  /// Edges may move along themselves (u free where z is an end, v where x is), never across.
+  bool sliding_edges = false;
 };
 
 /// Scaled elastic energy of a shallow clamped plate on a grid, its gradient and exact Hessian.
@@ -33,9 +35,9 @@ struct FvkCoefficients {
 /// rotations that are a gradient: exact for a strip, slightly stiff within about t of a corner.
 ///
 /// All fields are bicubic Hermite functions (value, both slopes and twist at each node:
-/// Bogner-Fox-Schmit); edges hold u = v = s = 0 and b = 0, grad b = 0. Integrals by 4 x 4 Gauss
-/// points a cell, one quadrature for energy, gradient and Hessian, so that the derivatives are
-/// exact. Unknowns run node column by node column along x: the Hessian is block-tridiagonal.
+/// Bogner-Fox-Schmit); edges hold u = v = s = 0 (or slide) and b = 0, grad b = 0. Integrals by 4 x
+/// 4 Gauss points a cell, one quadrature for energy, gradient and Hessian, so that the derivatives
+/// are exact. Unknowns run node column by node column along x: the Hessian is block-tridiagonal.
 class FvkModel {
  public:
   using Vector = Eigen::VectorXd;
@@ -86,11 +88,13 @@ class FvkModel {
  private:
   using Points = Eigen::Matrix<double, 16, 16>;  // (Gauss points, functions) or (functions)^2
   using Values = Eigen::Array<double, 16, 1>;
+  using Unknowns = std::array<Index, 64>;  // of a cell's functions, field by field; -1 if held
   struct CellTable {
     std::array<HermiteValues, 4> value, slope, curvature;  // at the four Gauss points
   };
   /// What an integral over one cell needs: weights and slopes of the 16 functions at its points.
   struct Cell {
+    Index ix, index;  ///< column, and place in bending_
     Values weight;
     Points x, z;
   };
@@ -100,14 +104,17 @@ class FvkModel {
   };
 
   Cell cell(Index ix, Index iz) const;
-  std::array<Index, 64> cell_unknowns(Index ix, Index iz) const;
-  static Values gather(const Vector& q, const std::array<Index, 64>& indices, Field field);
-  Stretch stretch(const Vector& q, const Cell& at, const std::array<Index, 64>& indices) const;
+  /// visit(cell, unknowns) for all cells, in their order.
+  template <class Visit>
+  void for_each_cell(const Visit& visit) const;
+  Unknowns cell_unknowns(Index ix, Index iz) const;
+  static Values gather(const Vector& q, const Unknowns& indices, Field field);
+  Stretch stretch(const Vector& q, const Cell& at, const Unknowns& indices) const;
   static CellTable table(double h);
   static Points products(const HermiteValues* along_x, const HermiteValues* along_z);
   Points bending(Index ix, Index iz) const;
-  void scatter(Index ix, const std::array<Index, 64>& indices, Field row, Field column,
-               const Points& block, BlockTridiagonal& matrix) const;
+  void scatter(Index ix, const Unknowns& indices, Field row, Field column, const Points& block,
+               BlockTridiagonal& matrix) const;
 
   HermiteAxis x_, z_;
   FvkCoefficients coefficients_;

@@ -69,7 +69,8 @@ double ResidualNorm::step(const Vector& d) const {
 }
 
 Equilibrium solve_equilibrium(const FvkModel& model, const ResidualNorm& norm, const Vector& load,
-                              const Vector& start, const NewtonOptions& options) {
+                              const Vector& start, const NewtonOptions& options,
+                              const Monitor& monitor) {
   Equilibrium state;
   state.q = start;
   BlockTridiagonal hessian(model.block_sizes());
@@ -85,6 +86,7 @@ Equilibrium solve_equilibrium(const FvkModel& model, const ResidualNorm& norm, c
       return state;
     }
     if (state.iterations >= options.max_iterations) return state;
+    monitor.checkpoint();
     hessian.set_zero();
     model.add_hessian(state.q, hessian);
     state.tangent = std::make_shared<const BlockFactorisation>(hessian);
@@ -120,6 +122,7 @@ Equilibrium solve_equilibrium(const FvkModel& model, const ResidualNorm& norm, c
           break;
         }
         share *= 4.0;
+        monitor.checkpoint();
       }
     } else {
       d = -state.tangent->solve(imbalance);

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "manoscope/core/monitor.hpp"
 #include "manoscope/wall/fvk_model.hpp"
 
 namespace manoscope::wall {
@@ -43,9 +44,10 @@ class ResidualNorm {
 /// polynomial of degree four, whose first minimum is found from three slopes.
 /// @param start  Any state; zero for the flat wall.
 /// Does not throw where it does not converge: `converged` says so.
+/// @throws Interrupted if the monitor says so; it is asked before every factorisation.
 Equilibrium solve_equilibrium(const FvkModel& model, const ResidualNorm& norm,
                               const Eigen::VectorXd& load, const Eigen::VectorXd& start,
-                              const NewtonOptions& options = {});
+                              const NewtonOptions& options = {}, const Monitor& monitor = {});
 
 /// Hessian of the flat wall without prestress: positive definite.
 BlockTridiagonal flat_hessian(const FvkModel& model);

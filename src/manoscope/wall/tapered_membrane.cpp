@@ -33,12 +33,22 @@ TaperedMembrane::TaperedMembrane(Length length, const Membrane& membrane, const 
   }
 }
 
-double TaperedMembrane::deflection(double x, double pressure) const {
+double TaperedMembrane::taper(double x) const {
   if (!(x > 0.0 && x < length_)) return 0.0;
-  const double taper =
-      std::expm1(-x / influence_length_) * std::expm1(-(length_ - x) / influence_length_);
+  return std::expm1(-x / influence_length_) * std::expm1(-(length_ - x) / influence_length_);
+}
+
+Length TaperedMembrane::crest(double x, double pressure) const {
   const double held = preload_.load.si() * (1.0 + preload_.lopsidedness * (x / length_ - 0.5));
-  return taper * section_.deflection(Pressure::from_si(pressure - held)).si();
+  return section_.crest(Pressure::from_si(pressure - held));
+}
+
+double TaperedMembrane::deflection(double x, double pressure) const {
+  return taper(x) * kParabolaMean * crest(x, pressure).si();
+}
+
+double TaperedMembrane::compliance(double x, double pressure) const {
+  return taper(x) * kParabolaMean * section_.crest_compliance(crest(x, pressure));
 }
 
 Array1 TaperedMembrane::deflection(const Array1& x, const Array1& pressure) const {

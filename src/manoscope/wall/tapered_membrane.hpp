@@ -36,15 +36,23 @@ class TaperedMembrane {
   Length length() const { return Length::from_si(length_); }
   Length influence_length() const { return Length::from_si(influence_length_); }
   const LongMembrane& cross_section() const { return section_; }
+  const Preload& preload() const { return preload_; }
 
   /// Width-averaged deflection at x in [0, l], 0 outside; x in m, gauge pressure in Pa, zeta in m.
   double deflection(double x, double pressure) const;
-  /// The same at many stations, one pressure each: (n), (n) -> (n).
+  /// d zeta/dp there, m/Pa; x in m, gauge pressure in Pa.
+  double compliance(double x, double pressure) const;
+  /// Deflections at many stations, one pressure each: (n), (n) -> (n).
   Array1 deflection(const Array1& x, const Array1& pressure) const;
   /// The same at many stations under one uniform pressure.
   Array1 deflection(const Array1& x, Pressure pressure) const;
 
  private:
+  /// T(x), 0 outside.
+  double taper(double x) const;
+  /// Crest deflection without the taper, m.
+  Length crest(double x, double pressure) const;
+
   double length_, influence_length_;
   LongMembrane section_;
   Preload preload_;

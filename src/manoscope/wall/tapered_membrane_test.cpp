@@ -60,6 +60,22 @@ TEST(TaperedMembrane, OfManyStationsIsThatOfEach) {
   }
 }
 
+TEST(TaperedMembrane, ComplianceIsTheSlopeOfTheDeflection) {
+  const TaperedMembrane wall(15.5 * mm, kNitride, {700.0 * Pa, 0.1});
+  for (const double x : {0.2e-3, 7.75e-3, 15.1e-3}) {
+    for (const double p : {0.0, 690.0, 5e3, 40e3}) {
+      // Central difference over 0.1 Pa; the curve bends over 60 Pa or more: (0.1/60)^2.
+      const double slope = (wall.deflection(x, p + 0.1) - wall.deflection(x, p - 0.1)) / 0.2;
+      EXPECT_NEAR(wall.compliance(x, p) / slope, 1.0, 1e-5) << x << " " << p;
+    }
+  }
+  EXPECT_EQ(wall.compliance(0.0, 5e3), 0.0);
+  EXPECT_EQ(wall.compliance(16e-3, 5e3), 0.0);
+  Membrane slack = kNitride;
+  slack.prestress = Pressure{};
+  EXPECT_TRUE(std::isinf(TaperedMembrane(15.5 * mm, slack).compliance(7e-3, 0.0)));
+}
+
 TEST(TaperedMembrane, RefusesSizesOutOfRange) {
   EXPECT_THROW(TaperedMembrane(Length{}, kNitride), InputError);
   EXPECT_THROW(TaperedMembrane(15.5 * mm, kNitride, {}, -1.0 * mm), InputError);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "manoscope/io/reader.hpp"
+
+namespace manoscope::fuzz {
+
+/// An undamaged file from which damaged ones are made.
+struct Seed {
+  const io::Reader* reader = nullptr;
+  std::string name;  ///< of the file, as its extension matters to some readers
+  std::string bytes;
+  /// Name and content of the files of a zip archive. Where there are any, a mutation damages one of
+  /// them and packs all again: the checksums of the archive would refuse every other wound.
+  std::vector<std::pair<std::string, std::string>> parts;
+  std::string prefix;  ///< what stands before the archive
+};
+
+/// Small files written here for every reader of the registry, then the maps of a folder that are of
+/// at most 4 MiB (none where the folder is absent). Formats kept out are listed in seeds.cpp.
+///
+/// @param scratch  an empty folder for the files of our own writers.
+std::vector<Seed> all_seeds(const std::filesystem::path& scratch,
+                            const std::filesystem::path& maps);
+
+}  // namespace manoscope::fuzz

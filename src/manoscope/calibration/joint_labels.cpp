@@ -1,0 +1,205 @@
+#include "manoscope/calibration/joint_labels.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+namespace manoscope::calibration {
+namespace {
+
+/// The state of the wall at every level, and its standard uncertainty.
+struct States {
+  Array1 value, sigma;  ///< (n) m
+};
+
+/// Deflections projected on the difference between the highest and the lowest level, over the
+/// stations that count in all; none if there are too few.
+std::optional<States> project(const std::vector<Level>& levels) {
+  constexpr Index kFewest = 5;
+  const Index n_x = levels.front().profile.x.size();
+  Array1 weight = levels.back().profile.zeta - levels.front().profile.zeta;
+  for (const Level& level : levels) {
+    for (Index ix = 0; ix < n_x; ++ix) {
+      if (level.profile.flags[ix] != 0) weight[ix] = 0.0;
+    }
+  }
+  const double size = weight.abs().sum();
+  if ((weight != 0.0).count() < kFewest || size == 0.0) return std::nullopt;
+  weight /= size;
+  // An error that all maps have in common moves no level against the others.
+  std::map<std::string, int> seen;
+  for (const Level& level : levels) {
+    for (const ErrorMode& mode : level.profile.uncertainty.modes) ++seen[mode.variable];
+  }
+  const auto n = static_cast<Index>(levels.size());
+  States states{Array1(n), Array1(n)};
+  for (Index k = 0; k < n; ++k) {
+    const Profile& profile = levels[static_cast<std::size_t>(k)].profile;
+    states.value[k] = (weight * profile.zeta).sum();
+    double variance = (weight * profile.uncertainty.independent).square().sum();
+    for (const ErrorMode& mode : profile.uncertainty.modes) {
+      if (seen[mode.variable] == 1) variance += std::pow((weight * mode.effect).sum(), 2);
+    }
+    states.sigma[k] = std::sqrt(variance);
+  }
+  return states;
+}
+
+/// dp/ds at every level, by the line through it and its two neighbours in s.
+Array1 slopes(const Array1& state, const Array1& label) {
+  const Index n = state.size();
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  for (Index k = 0; k < n; ++k) order[static_cast<std::size_t>(k)] = k;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return state[a] < state[b]; });
+  Array1 result = Array1::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    double count = 0.0, ss = 0.0, sp = 0.0, sss = 0.0, ssp = 0.0;
+    const Index here = order[static_cast<std::size_t>(i)];
+    for (Index j = std::max<Index>(0, i - 1); j <= std::min(n - 1, i + 1); ++j) {
+      const Index k = order[static_cast<std::size_t>(j)];
+      const double s = state[k] - state[here], p = label[k] - label[here];
+      count += 1.0;
+      ss += s;
+      sp += p;
+      sss += s * s;
+      ssp += s * p;
+    }
+    const double determinant = count * sss - ss * ss;
+    if (determinant > 0.0) result[here] = (count * ssp - ss * sp) / determinant;
+  }
+  return result;
+}
+
+/// Labels given the size of the spline's rest.
+struct Estimate {
+  double log_likelihood;
+  Array1 pressure;
+  Matrix response;
+  Matrix covariance;
+  double worst_pull;  ///< of a label against what the others say
+};
+
+class LabelModel {
+ public:
+  LabelModel(const States& states, const Array1& label, const Array1& sigma)
+      : label_(label), scale_(label.maxCoeff() - label.minCoeff()) {
+    const Index n = label.size();
+    const double reach = states.value.abs().maxCoeff();
+    const Array1 q = states.value / reach;
+    const double low = states.value.minCoeff();
+    const Array1 u = (states.value - low) / (states.value.maxCoeff() - low);
+    law_.resize(n, 3);
+    law_.col(0) = Array1::Constant(n, scale_);
+    law_.col(1) = scale_ * q;
+    law_.col(2) = scale_ * q.cube();
+    kernel_.resize(n, n);
+    for (Index i = 0; i < n; ++i) {
+      for (Index j = 0; j < n; ++j) {
+        const double a = std::min(u[i], u[j]), b = std::max(u[i], u[j]);
+        kernel_(i, j) = a * a * (0.5 * b - a / 6.0);
+      }
+    }
+    label_variance_ = sigma.square();
+    state_variance_ = (slopes(states.value, label) * states.sigma).square();
+    // Exact labels and states still leave a covariance that can be inverted.
+    constexpr double kFloor = 1e-3;
+    floor_ = std::pow(kFloor * std::sqrt(label_variance_.maxCoeff()), 2);
+  }
+
+  Estimate estimate(double log_size) const {
+    const Index n = label_.size();
+    Matrix covariance = std::pow(scale_ * std::exp(log_size), 2) * kernel_;
+    covariance.diagonal() += (label_variance_ + state_variance_ + floor_).matrix();
+    const Eigen::LLT<Matrix> factors(covariance);
+    const Matrix inverse = factors.solve(Matrix::Identity(n, n));
+    const Matrix inverse_law = inverse * law_;
+    const Eigen::LLT<Matrix> normal(Matrix(law_.transpose() * inverse_law));
+    Estimate result;
+    result.log_likelihood = -std::numeric_limits<double>::infinity();
+    if (factors.info() != Eigen::Success || normal.info() != Eigen::Success) return result;
+    // What is left of the labels beyond the law, weighted.
+    const Matrix projector = inverse - inverse_law * normal.solve(inverse_law.transpose());
+    const Eigen::VectorXd weighted = projector * label_.matrix();
+    const auto log_determinant = [](const Eigen::LLT<Matrix>& of) {
+      return 2.0 * Matrix(of.matrixL()).diagonal().array().log().sum();
+    };
+    result.log_likelihood =
+        -0.5 * (label_.matrix().dot(weighted) + log_determinant(factors) + log_determinant(normal));
+    const auto variance = label_variance_.matrix().asDiagonal();
+    result.response = Matrix::Identity(n, n) - variance * projector;
+    result.pressure = label_ - label_variance_ * weighted.array();
+    result.covariance = Matrix(variance) - variance * projector * variance;
+    result.worst_pull =
+        (weighted.array() / projector.diagonal().array().max(1e-300).sqrt()).abs().maxCoeff();
+    return result;
+  }
+
+ private:
+  Array1 label_;
+  double scale_, floor_ = 0.0;
+  Matrix law_, kernel_;
+  Array1 label_variance_, state_variance_;
+};
+
+}  // namespace
+
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
+  constexpr Index kFewest = 6;
+  constexpr double kSmallest = -14.0, kLargest = 3.0, kStep = 0.25;  // log of the rest's size
+  constexpr double kWorstPull = 4.5;
+  // A size e times that of the likelihood: for one given wall the most likely smoothing is biased
+  // by up to 0.7 of its standard uncertainty, this one by up to 0.5.
+  constexpr std::size_t kLooser = 4;  // steps
+  const auto n = static_cast<Index>(levels.size());
+  Array1 label(n), sigma(n);
+  for (Index k = 0; k < n; ++k) {
+    label[k] = levels[static_cast<std::size_t>(k)].pressure.si();
+    sigma[k] = levels[static_cast<std::size_t>(k)].uncertainty.si();
+  }
+  if ((sigma > 0.0).count() < kFewest) return std::nullopt;
+  const auto states = project(levels);
+  if (!states || !(states->value.maxCoeff() > states->value.minCoeff())) return std::nullopt;
+
+  const LabelModel model(*states, label, sigma);
+  std::vector<Estimate> estimates;
+  double best = -std::numeric_limits<double>::infinity();
+  for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
+    estimates.push_back(model.estimate(log_size));
+    best = std::max(best, estimates.back().log_likelihood);
+  }
+  if (!std::isfinite(best)) return std::nullopt;
+  double total = 0.0;
+  JointLabels joint{Array1::Zero(n), Matrix::Zero(n, n), Matrix::Zero(n, n)};
+  double worst = 0.0;
+  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
+    const double weight = std::exp(estimates[i].log_likelihood - best);
+    const Estimate& estimate = estimates[i + kLooser];
+    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
+    total += weight;
+    joint.pressure += weight * estimate.pressure;
+    joint.response += weight * estimate.response;
+    worst += weight * estimate.worst_pull;
+  }
+  if (!(total > 0.0)) return std::nullopt;
+  joint.pressure /= total;
+  joint.response /= total;
+  if (!(worst / total <= kWorstPull)) return std::nullopt;
+  Matrix covariance = Matrix::Zero(n, n);
+  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
+    const double weight = std::exp(estimates[i].log_likelihood - best) / total;
+    const Estimate& estimate = estimates[i + kLooser];
+    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
+    const Eigen::VectorXd off = (estimate.pressure - joint.pressure).matrix();
+    covariance += weight * (estimate.covariance + off * off.transpose());
+  }
+  // Exact labels leave zero rows: the floor keeps the factor's pivots above round-off.
+  covariance.diagonal().array() += 1e-12 * sigma.square().maxCoeff();
+  joint.root = covariance.llt().matrixL();
+  return joint;
+}
+
+}  // namespace manoscope::calibration

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "manoscope/calibration/levels.hpp"
+#include "manoscope/core/arrays.hpp"
+
+namespace manoscope::calibration {
+
+/// The pressures of all levels, estimated together.
+struct JointLabels {
+  Array1 pressure;  ///< (n) Pa
+  /// (n, n): how the pressures follow the labels; an error that labels share goes through it.
+  Matrix response;
+  /// (n, n) Pa, lower triangular: root of the covariance of their errors; its columns are error
+  /// variables of unit variance that the levels share.
+  Matrix root;
+};
+
+/// What the labels of all levels together say of each one's pressure.
+///
+/// The error of a label is the same at every station, so the wall as a whole tells it: its state is
+/// one number, the deflection s projected on its own response, and
+///
+///   label_k = F(s_k) + e_k - F' d_k,    F(s) = a + b s + c s^3 + a cubic spline's rest,
+///
+/// with e_k the error of the label and d_k that of s_k. (p = b s + c s^3 is the long clamped
+/// membrane, Ozsun et al. 2013, eq. (1), and, with b < 0 < a, a buckled one; c = 0 is a plate.) The
+/// rest is a Gaussian process with the covariance of the cubic smoothing spline (Wahba, Spline
+/// Models for Observational Data, 1990, ch. 1); how large it is the labels themselves say:
+/// pressures and covariance are averages over that size, weighted by its restricted likelihood,
+/// with e times the size, so that the bias of smoothing stays below the uncertainty. A wall that
+/// follows no such law keeps its labels almost as they were read.
+///
+/// @param levels  ascending in pressure, on the same stations.
+/// @return none where fewer than six labels have an uncertainty, fewer than five stations count in
+/// every level, or a label lies more than 4.5 standard uncertainties off what the others say: then
+/// something else is wrong, and labels stay as they are.
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels);
+
+}  // namespace manoscope::calibration

@@ -1,0 +1,143 @@
+#include "manoscope/calibration/joint_labels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "manoscope/core/random.hpp"
+
+namespace manoscope::calibration {
+namespace {
+
+/// p(zeta) of a wall, Pa over m.
+using WallLaw = std::function<double(double)>;
+
+double membrane(double s) { return 1e8 * s + 0.45e18 * s * s * s; }
+double buckled(double s) { return 700.0 - 3e7 * s + 0.45e18 * s * s * s; }
+double plate(double s) { return 4e7 * s + 2e15 * s * s * s * (1.0 - 2e7 * s * s); }
+/// A wall that stops at 20 um and goes on 100 times stiffer: no law at all.
+double kinked(double s) { return 1e8 * s + (s > 20e-6 ? 1e10 * (s - 20e-6) : 0.0); }
+
+constexpr double kLabelNoise = 10.0;  // Pa
+
+/// 24 levels of a wall at 8 stations, evenly spaced in deflection, labels noisy but the first.
+struct Campaign {
+  std::vector<Level> levels;
+  Array1 truth;  ///< Pa
+};
+
+Campaign campaign(const WallLaw& law, double low, double high, std::uint64_t trial) {
+  constexpr Index kLevels = 24, kStations = 8;
+  RandomStream noise(47, "joint labels", trial);
+  Campaign made;
+  made.truth.resize(kLevels);
+  const double first = law(low);
+  for (Index k = 0; k < kLevels; ++k) {
+    const double s = low + (high - low) * static_cast<double>(k) / (kLevels - 1);
+    Level level;
+    level.name = "h" + std::to_string(k);
+    made.truth[k] = law(s) - first;
+    level.uncertainty = Pressure::from_si(k == 0 ? 0.0 : kLabelNoise);
+    level.pressure =
+        Pressure::from_si(made.truth[k] + (k == 0 ? 0.0 : kLabelNoise * noise.normal()));
+    level.profile.x = Array1::LinSpaced(kStations, 1e-3, 8e-3);
+    level.profile.zeta = s * Array1::LinSpaced(kStations, 0.8, 1.2);
+    level.profile.uncertainty.independent = Array1::Constant(kStations, 1e-9);
+    for (Index ix = 0; ix < kStations; ++ix) level.profile.zeta[ix] += 1e-9 * noise.normal();
+    level.profile.flags = Flags1::Zero(kStations);
+    made.levels.push_back(std::move(level));
+  }
+  return made;
+}
+
+struct Quality {
+  double rms = 0.0;    ///< of the estimates' errors, Pa
+  double width = 0.0;  ///< of their pulls, correlations taken into account
+  int estimated = 0;
+};
+
+Quality judge(const WallLaw& law, double low, double high) {
+  constexpr int kTrials = 60;
+  Quality quality;
+  double errors = 0.0, pulls = 0.0, n = 0.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Campaign made = campaign(law, low, high, static_cast<std::uint64_t>(trial));
+    const auto joint = estimate_labels(made.levels);
+    if (!joint) continue;
+    ++quality.estimated;
+    const Array1 off = joint->pressure - made.truth;
+    errors += off.square().sum();
+    const Array1 variance = (joint->root * joint->root.transpose()).diagonal().array();
+    for (Index k = 1; k < off.size(); ++k) pulls += off[k] * off[k] / variance[k];
+    n += static_cast<double>(off.size() - 1);
+  }
+  quality.rms = std::sqrt(errors / n);
+  quality.width = std::sqrt(pulls / n);
+  return quality;
+}
+
+TEST(JointLabels, TakeAThirdOfTheNoiseOffLabelsOfASmoothWallAndSayHowWell) {
+  for (const auto& [law, low, high] : {std::tuple<WallLaw, double, double>{membrane, 0.0, 40e-6},
+                                       {buckled, 11e-6, 45e-6},
+                                       {buckled, -9e-6, 45e-6},
+                                       {plate, 0.0, 100e-6}}) {
+    const Quality quality = judge(law, low, high);
+    EXPECT_EQ(quality.estimated, 60);
+    // Three to nine free numbers among 23 labels: 10 Pa sqrt(9/23) = 6.3 Pa.
+    EXPECT_LT(quality.rms, 6.5);
+    // 60 campaigns of some five independent errors: 4 %, four times.
+    EXPECT_NEAR(quality.width, 1.0, 0.17);
+  }
+}
+
+TEST(JointLabels, LeaveTheLabelsOfAWallWithoutALawAlmostAsTheyWere) {
+  const Quality quality = judge(kinked, 0.0, 40e-6);
+  EXPECT_GT(quality.estimated, 50);
+  EXPECT_LT(quality.rms, 1.1 * kLabelNoise);
+  EXPECT_NEAR(quality.width, 1.0, 0.2);
+}
+
+TEST(JointLabels, KeepAnExactLabel) {
+  const Campaign made = campaign(membrane, 0.0, 40e-6, 1);
+  const auto joint = estimate_labels(made.levels);
+  ASSERT_TRUE(joint);
+  EXPECT_NEAR(joint->pressure[0], 0.0, 1e-9);
+  EXPECT_LT(joint->root.row(0).norm(), 1e-3);
+}
+
+TEST(JointLabels, AreNotEstimatedWhereAMistakeIsAmongThem) {
+  Campaign made = campaign(membrane, 0.0, 40e-6, 2);
+  made.levels[12].pressure = 1.3 * made.levels[12].pressure;
+  const auto joint = estimate_labels(made.levels);
+  // Either refused, or the rest's size has grown until every label keeps its own.
+  if (joint) {
+    EXPECT_NEAR(joint->pressure[12], made.levels[12].pressure.si(), 3.0 * kLabelNoise);
+  }
+}
+
+TEST(JointLabels, WantEnoughLabelsAndStations) {
+  Campaign made = campaign(membrane, 0.0, 40e-6, 3);
+  std::vector<Level> few(made.levels.begin(), made.levels.begin() + 6);
+  EXPECT_FALSE(estimate_labels(few));  // five uncertain ones
+  for (Level& level : made.levels) level.uncertainty = Pressure{};
+  EXPECT_FALSE(estimate_labels(made.levels));
+  made = campaign(membrane, 0.0, 40e-6, 3);
+  for (Index ix = 0; ix < 4; ++ix) made.levels[static_cast<std::size_t>(ix)].profile.flags[ix] = 1;
+  EXPECT_FALSE(estimate_labels(made.levels));  // four stations left
+}
+
+TEST(JointLabels, DoNotDependOnTheUnitOfDeflection) {
+  const Campaign made = campaign(membrane, 0.0, 40e-6, 4);
+  std::vector<Level> scaled = made.levels;
+  for (Level& level : scaled) {
+    level.profile.zeta *= 1e6;
+    level.profile.uncertainty.independent *= 1e6;
+  }
+  const auto a = estimate_labels(made.levels), b = estimate_labels(scaled);
+  ASSERT_TRUE(a && b);
+  EXPECT_LT((a->pressure - b->pressure).abs().maxCoeff(), 1e-4);  // round-off, badly conditioned
+}
+
+}  // namespace
+}  // namespace manoscope::calibration

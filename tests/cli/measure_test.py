@@ -1,0 +1,168 @@
+"""The command measure.
+
+Usage: measure_test.py PROGRAM [unittest arguments]
+"""
+
+import csv
+import json
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+from support import DemoFolder, PROGRAM, hashes, run, main
+
+
+class Measure(DemoFolder):
+    def test_threads_change_no_byte(self):
+        results = []
+        for threads in (1, 2):
+            out = self.folder / f"threads{threads}"
+            run("measure", self.out / "experiment", "-o", out, "--threads", threads, check_code=0)
+            results.append(hashes(out))
+        self.assertEqual(results[0], results[1])
+
+    def test_measure_prints_json_that_agrees_with_the_table(self):
+        out = self.folder / "json"
+        done = run("measure", self.out / "experiment", "-o", out, "--json", check_code=0)
+        printed = {entry["run"]: entry for entry in json.loads(done.stdout)["runs"]}
+        with open(out / "drops.csv", newline="") as table:
+            rows = list(csv.DictReader(table))
+        self.assertEqual(len(rows), len(printed))
+        for row in rows:
+            value = printed[row["run"]]["extracted_drop_Pa"]
+            self.assertAlmostEqual(float(row["extracted_drop_Pa"]), value, delta=1e-6 * abs(value))
+
+    def test_measure_prints_p_of_x_and_the_verdict_of_every_run(self):
+        out = self.folder / "printed"
+        done = run("measure", self.out / "experiment", "-o", out, check_code=0)
+        self.assertIn("± U, k = 2", done.stdout)
+        with open(out / "drops.csv", newline="") as table:
+            drops = list(csv.DictReader(table))
+        for row in drops:
+            self.assertIn(f"p(x) {row['run']} [Pa]", done.stdout)
+            agrees = "agrees" if float(row["en_number"]) <= 1.0 else "disagrees"
+            self.assertRegex(done.stdout, rf"(?m)^ *{row['run']} .* {agrees}$")
+        # The same numbers as the demo printed for the same maps.
+        [line] = [line for line in self.done.stdout.splitlines() if re.match(r" *7\.7\d ", line)]
+        self.assertIn(line, done.stdout)
+        # Results on standard output, what is said about them on standard error.
+        self.assertIn("result in", done.stderr)
+        self.assertNotIn("result in", done.stdout)
+        quiet = run("measure", self.out / "experiment", "-o", out, "--quiet", check_code=0)
+        self.assertEqual(quiet.stderr, "")
+        self.assertNotIn("p(x)", quiet.stdout)
+        self.assertIn("agrees", quiet.stdout)
+        self.assertNotIn("p(x) ", run("measure", self.out / "experiment", "-o", out, "--json",
+                                      check_code=0).stdout)
+
+    def test_a_result_is_replaced_by_its_own_experiment_alone(self):
+        out = self.folder / "kept"
+        first = run("measure", self.out / "experiment", "-o", out, check_code=0)
+        self.assertNotIn("replaced", first.stderr)
+        before = hashes(out)
+        again = run("measure", self.out / "experiment", "-o", out, check_code=0)
+        self.assertIn("the earlier one is replaced", again.stderr)
+        self.assertEqual(hashes(out), before)
+        other = self.renamed("other")
+        refused = run("measure", other, "-o", out, check_code=2)
+        self.assertIn("another experiment's result stands there", refused.stderr)
+        self.assertIn("--overwrite", refused.stderr)
+        self.assertEqual((refused.stdout, hashes(out)), ("", before))
+        run("demo", "-o", out, check_code=0)  # of the same name as its experiment
+        run("measure", other, "-o", out, "--overwrite", check_code=0)
+        self.assertNotEqual(hashes(out), before)
+        self.assertIn("another experiment's", run("demo", "-o", out, check_code=2).stderr)
+        self.assertIn("--overwrite", run("measure", "--help", check_code=0).stdout)
+
+    def test_uncertainty_of_fluid_and_pump_widen_that_of_qr(self):
+        before = json.loads(run("measure", self.out / "experiment", "-o", self.folder / "plain",
+                                "--json", check_code=0).stdout)["runs"]
+        wide = self.renamed("fluid_and_pump")
+        path = wide / "experiment.toml"
+        text = path.read_text().replace("[fluid]\n", '[fluid]\nviscosity_uncertainty = "0.03 mPa s"\n')
+        path.write_text(text.replace("[instrument]\n", "[instrument]\nflow_rate_uncertainty = 0.04\n"))
+        self.assertIn('viscosity = "1 mPa s"', text)
+        out = self.folder / "wide_out"
+        after = json.loads(run("measure", wide, "-o", out, "--json", check_code=0).stdout)["runs"]
+        for old, new in zip(before, after):
+            qr, u = old["resistance_drop_Pa"], old["resistance_drop_uncertainty_Pa"]
+            # 3 % and 4 % of QR are 5 % of it.
+            self.assertAlmostEqual(new["resistance_drop_uncertainty_Pa"],
+                                   (u * u + (0.05 * qr) ** 2) ** 0.5, delta=1e-8 * qr)
+            self.assertLess(new["en_number"], old["en_number"])
+        told = run("measure", wide, "-o", out, check_code=0).stdout
+        self.assertIn("U(QR) holds gap, deflection, flow rate and viscosity.", told)
+        self.assertIn("flow rate and viscosity count as exact", self.done.stdout)
+
+    def test_a_place_left_out_of_the_file_is_found_from_the_maps(self):
+        found = self.folder / "found"
+        shutil.copytree(self.out / "experiment", found)
+        path = found / "experiment.toml"
+        kept = [line for line in path.read_text().splitlines()
+                if not re.match(r"\s*(origin|flow|outward|rotation)\s*=", line)]
+        path.write_text("\n".join(kept) + "\n")
+        run("measure", found, "-o", self.folder / "found_out", check_code=0)
+        judged = json.loads(run("judge", self.folder / "found_out", found, "--json",
+                                check_code=0).stdout)["runs"]
+        for run_ in judged:
+            self.assertLess(run_["rms_error_Pa"], max(20.0, 0.01 * run_["true_drop_Pa"]), run_)
+
+    def test_bare_matrices_are_measured_once_the_file_says_their_scale(self):
+        bare = self.folder / "bare"
+        shutil.copytree(self.out / "experiment", bare)
+        [summary] = json.loads(run("inspect", bare / "h00.gsf", "--json").stdout)
+        [channel] = summary["channels"]
+        for path in bare.glob("*.gsf"):
+            run("convert", path, path.with_suffix(".txt"), check_code=0)
+            rows = [line for line in path.with_suffix(".txt").read_text().splitlines()
+                    if not line.startswith("#")]
+            path.with_suffix(".txt").write_text("\n".join(rows) + "\n")
+            path.unlink()
+        for name in ("hydrostatic.csv", "flow.csv"):
+            path = bare / name
+            path.write_text(path.read_text().replace(".gsf", ".txt"))
+        done = run("measure", bare, "-o", self.folder / "bare_out", check_code=2)
+        self.assertIn("instrument.height_unit", done.stderr)
+        toml = (bare / "experiment.toml").read_text()
+        scale = (f'[instrument]\nheight_unit = "m"\n'
+                 f'pixel_pitch = ["{channel["pitch_x_m"]} m", "{channel["pitch_y_m"]} m"]\n')
+        (bare / "experiment.toml").write_text(toml.replace("[instrument]\n", scale, 1))
+        run("measure", bare, "-o", self.folder / "bare_out", check_code=0)
+        for old, new in zip(self.pressures(self.out), self.pressures(self.folder / "bare_out")):
+            # The text keeps the 24 bits of the .gsf to a few parts in 1e9 of a height.
+            self.assertEqual(old == "", new == "")
+            if old:
+                self.assertAlmostEqual(float(old), float(new), delta=1e-3 + 1e-6 * abs(float(old)))
+
+    @staticmethod
+    def pressures(folder):
+        with open(folder / "pressure.csv", newline="") as table:
+            return [row["pressure_Pa"] for row in csv.DictReader(table)]
+
+    def test_interruption_leaves_the_old_result_whole(self):
+        out = self.folder / "stopped"
+        run("measure", self.out / "experiment", "-o", out, check_code=0)
+        before = hashes(out)
+        statuses = set()
+        for delay in (0.02, 0.1, 0.2, 0.3):
+            process = subprocess.Popen([PROGRAM, "measure", str(self.out / "experiment"), "-o",
+                                        str(out), "--threads", "1"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(delay)
+            process.send_signal(signal.SIGINT)
+            statuses.add(process.wait(timeout=60))
+            self.assertEqual(hashes(out), before)
+        self.assertLessEqual(statuses, {0, 130, -signal.SIGINT})
+        self.assertTrue(statuses & {130, -signal.SIGINT}, statuses)
+
+    def test_an_output_folder_that_cannot_be_made_is_named(self):
+        blocked = self.folder / "file"
+        blocked.write_text("not a folder")
+        done = run("measure", self.out / "experiment", "-o", blocked / "out", check_code=2)
+        self.assertIn("file", done.stderr)
+
+
+if __name__ == "__main__":
+    main()
