@@ -27,6 +27,9 @@ export CMAKE_GENERATOR ?= Ninja
 export CMAKE_BUILD_TYPE ?= $(BUILD_TYPE)
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 export JOBS
+# A build of the same sources in another folder finds the same objects.
+export CCACHE_BASEDIR ?= $(CURDIR)
+export CCACHE_NOHASHDIR ?= 1
 
 install = $(if $(filter yes,$(PACKAGES)),tools/install_packages.sh,@: not installing)
 configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)

@@ -29,16 +29,27 @@ endif()
 # Results must not depend on the number of threads that Eigen finds.
 target_compile_definitions(manoscope_options INTERFACE EIGEN_DONT_PARALLELIZE)
 
-function(manoscope_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES} ${CMAKE_SOURCE_DIR}/tests/support/test_main.cpp)
-  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
-  target_link_libraries(${name} PRIVATE ${ARG_LINK} GTest::gtest manoscope_options)
-  target_compile_definitions(${name} PRIVATE
+# The entry of every test program, and the one object that knows places on this machine.
+function(manoscope_test_main)
+  if(TARGET manoscope_test_main)
+    return()
+  endif()
+  add_library(manoscope_test_main OBJECT ${CMAKE_SOURCE_DIR}/tests/support/test_main.cpp)
+  target_include_directories(manoscope_test_main PUBLIC ${CMAKE_SOURCE_DIR})
+  target_link_libraries(manoscope_test_main PUBLIC GTest::gtest PRIVATE manoscope_options)
+  target_compile_definitions(manoscope_test_main PRIVATE
     MANOSCOPE_SHARED_DIR="${MANOSCOPE_SHARED_DIR}"
     MANOSCOPE_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
     MANOSCOPE_PYTHON="${MANOSCOPE_PYTHON}"
     MANOSCOPE_PROGRAM="${CMAKE_BINARY_DIR}/manoscope")
+endfunction()
+
+function(manoscope_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  manoscope_test_main()
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LINK} manoscope_test_main manoscope_options)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   if(TARGET manoscope-hdf5-reader)  # of module io; what lies above may read HDF5 through it
     add_dependencies(${name} manoscope-hdf5-reader)

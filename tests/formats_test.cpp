@@ -14,6 +14,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/map_summary.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::io {
 namespace {
@@ -47,7 +48,7 @@ const std::vector<Settled> kSettled{
 };
 
 std::filesystem::path maps_folder() {
-  return std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data" / "maps";
+  return std::filesystem::path(test_paths::shared) / "data" / "maps";
 }
 
 using Row = std::map<std::string, std::string>;

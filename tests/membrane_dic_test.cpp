@@ -13,6 +13,7 @@
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/numerics/robust.hpp"
 #include "tests/support/npy.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope {
 namespace {
@@ -26,7 +27,7 @@ constexpr std::array<double, kLevels> kPressureBar{
 constexpr double kBar = 1e5, kHectopascal = 100.0;
 
 std::filesystem::path folder() {
-  return std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data" / "membrane_dic";
+  return std::filesystem::path(test_paths::shared) / "data" / "membrane_dic";
 }
 
 /// Standard deviation of the noise of one pixel from the roughness of its curve: residuals of each

@@ -11,6 +11,7 @@
 #include "manoscope/pipeline/judge.hpp"
 #include "manoscope/pipeline/measure.hpp"
 #include "manoscope/results/write.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope {
 namespace {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 class Practice : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    folder_ = fs::path(MANOSCOPE_SHARED_DIR) / "data" / "practice" / GetParam();
+    folder_ = fs::path(test_paths::shared) / "data" / "practice" / GetParam();
     if (!fs::exists(folder_)) GTEST_SKIP() << folder_ << " is not on this machine";
   }
   fs::path folder_;
@@ -61,7 +62,7 @@ TEST_P(Practice, ResultFileKeepsTheContractInPython) {
   const auto out = fs::temp_directory_path() / (std::string("manoscope_practice_") + GetParam());
   fs::remove_all(out);
   results::write_result(out, pipeline::measure(experiment::read_experiment(folder_)), {});
-  const std::string command = std::string(MANOSCOPE_PYTHON) + " " + MANOSCOPE_SOURCE_DIR +
+  const std::string command = std::string(test_paths::python) + " " + test_paths::source +
                               "/tests/python/result_contract_test.py " +
                               (out / "result.nc").string();
   EXPECT_EQ(std::system(command.c_str()), 0) << command;

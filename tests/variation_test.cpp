@@ -18,6 +18,7 @@
 #include "manoscope/io/writer.hpp"
 #include "manoscope/pipeline/judge.hpp"
 #include "manoscope/pipeline/measure.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace manoscope {
@@ -221,7 +222,7 @@ void write_varied(const fs::path& from, const fs::path& to, const Change& change
 }
 
 TEST_P(VariedPractice, ReadsTheSamePressureWithinItsErrorBars) {
-  const fs::path folder = fs::path(MANOSCOPE_SHARED_DIR) / "data" / "practice" / "S1";
+  const fs::path folder = fs::path(test_paths::shared) / "data" / "practice" / "S1";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not on this machine";
   static const results::Measurement plain =
       pipeline::measure(experiment::read_experiment(folder), {}, 2);

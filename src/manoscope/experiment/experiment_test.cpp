@@ -7,6 +7,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/experiment/test_folder.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::experiment {
 namespace {
@@ -194,7 +195,7 @@ TEST(ReadExperiment, PathsAreRelativeToTheExperimentElseToTheList) {
 
 TEST(ReadExperiment, ReadsThePracticeExperiments) {
   for (const auto& [name, first_flow_rate] : {std::pair{"S1", 5.0}, std::pair{"S4", 12.0}}) {
-    const fs::path folder = fs::path(MANOSCOPE_SHARED_DIR) / "data/practice" / name;
+    const fs::path folder = fs::path(test_paths::shared) / "data/practice" / name;
     if (!fs::exists(folder)) GTEST_SKIP() << "no practice experiments at " << folder;
     const Experiment e = read_experiment(folder);
     EXPECT_EQ(e.name, name);

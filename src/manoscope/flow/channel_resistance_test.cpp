@@ -9,6 +9,7 @@
 #include <string>
 
 #include "manoscope/core/error.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::flow {
 namespace {
@@ -153,7 +154,7 @@ TEST(ChannelReynolds, OfAFlatChannelIsTheFormulaOfTableOne) {
 }
 
 TEST(ChannelReynolds, AgreesWithAnIndependentExperiment) {
-  const auto folder = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data/practice/S1/truth";
+  const auto folder = std::filesystem::path(test_paths::shared) / "data/practice/S1/truth";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no practice experiment " << folder;
   std::ifstream file(folder / "truth.csv");
   std::string line;

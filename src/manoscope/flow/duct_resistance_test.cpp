@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "manoscope/core/error.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::flow {
 namespace {
@@ -123,7 +124,7 @@ TEST(DuctResistance, RefusesAGapOutsideItsRangeAndNamesTheStation) {
 }
 
 TEST(DuctResistance, AgreesWithTheReferenceTableOfRectangles) {
-  const auto path = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data/flow/caseC.csv";
+  const auto path = std::filesystem::path(test_paths::shared) / "data/flow/caseC.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference table " << path;
   std::ifstream file(path);
   std::string line;

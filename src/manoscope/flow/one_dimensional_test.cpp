@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "manoscope/core/error.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::flow {
 namespace {
@@ -73,7 +74,7 @@ TEST(OneDimensionalFlow, NeedsStationsUpToTheOutlet) {
 }
 
 TEST(OneDimensionalFlow, IsNearNavierStokesInABulgedChannelAtLowFlowRate) {
-  const auto path = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data/flow/caseD_Q5.csv";
+  const auto path = std::filesystem::path(test_paths::shared) / "data/flow/caseD_Q5.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference flow " << path;
   std::ifstream file(path);
   std::vector<double> x, pressure;

@@ -13,6 +13,7 @@
 #include "manoscope/io/netcdf_handle.hpp"
 #include "manoscope/io/reader.hpp"
 #include "manoscope/io/test_files.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::io {
 namespace {
@@ -24,7 +25,7 @@ using testing::TestFolder;
 class Hdf5Maps : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string probe = std::string(MANOSCOPE_PYTHON) + " -c 'import h5py' 2>/dev/null";
+    const std::string probe = std::string(test_paths::python) + " -c 'import h5py' 2>/dev/null";
     if (std::system(probe.c_str()) != 0) GTEST_SKIP() << "python3-h5py is not installed";
   }
   /// Runs `body` with an open file `f` of that name.
@@ -34,7 +35,7 @@ class Hdf5Maps : public ::testing::Test {
     const auto script =
         folder_.write("make.py", "import h5py, numpy as np\nwith h5py.File(r'" + path.string() +
                                      "', 'w'" + more + ") as f:\n" + body);
-    const std::string command = std::string(MANOSCOPE_PYTHON) + " " + script.string();
+    const std::string command = std::string(test_paths::python) + " " + script.string();
     EXPECT_EQ(std::system(command.c_str()), 0);
     return path;
   }

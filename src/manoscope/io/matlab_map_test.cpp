@@ -9,6 +9,7 @@
 #include "manoscope/io/reader.hpp"
 #include "manoscope/io/test_files.hpp"
 #include "manoscope/io/test_matlab.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::io {
 namespace {
@@ -61,7 +62,7 @@ TEST(MatlabMap, WhatDoesNotAddUpIsRefused) {
 
 TEST(MatlabMap, FilesOfScipyAreReadWithStructsSeriesAndCompression) {
   const TestFolder folder;
-  const std::string python = MANOSCOPE_PYTHON;
+  const std::string python = test_paths::python;
   if (std::system((python + " -c 'import scipy.io' 2>/dev/null").c_str()) != 0) {
     GTEST_SKIP() << "python3-scipy is not installed";
   }

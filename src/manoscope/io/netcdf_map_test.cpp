@@ -12,6 +12,7 @@
 #include "manoscope/io/test_classic_netcdf.hpp"
 #include "manoscope/io/test_files.hpp"
 #include "manoscope/io/writer.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::io {
 namespace {
@@ -194,7 +195,7 @@ TEST(NetcdfMap, SameMapSameBytesAtAnyTime) {
 
 TEST(NetcdfMap, XarrayOpensIt) {
   const TestFolder folder;
-  const std::string python = MANOSCOPE_PYTHON;
+  const std::string python = test_paths::python;
   if (std::system((python + " -c 'import xarray' 2>/dev/null").c_str()) != 0) {
     GTEST_SKIP() << "python3-xarray is not installed";
   }

@@ -13,6 +13,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/reader.hpp"
 #include "manoscope/io/test_bytes.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::io::testing {
 
@@ -70,7 +71,7 @@ inline ::testing::AssertionResult contains(const std::string& text, const std::s
 
 /// Shared practice data; empty where it is absent.
 inline std::filesystem::path shared_data(const std::string& name) {
-  const std::filesystem::path path = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data" / name;
+  const std::filesystem::path path = std::filesystem::path(test_paths::shared) / "data" / name;
   return std::filesystem::exists(path) ? path : std::filesystem::path();
 }
 

@@ -207,11 +207,13 @@ class TiffMap {
                      "The file is incomplete or damaged; copy or export it again");
   }
 
-  /// Makes room for row `iy` and some more: as the rows come, since an announced size alone shall
-  /// fill no memory.
+  /// Makes room for row `iy` and some more. Rows that are not packed have all their bytes in the
+  /// file (see check()): room for all. Packed ones get it as they come, since an announced size
+  /// alone shall fill no memory.
   void grow(const Page& page, Array2& values, Index iy) const {
     if (iy < values.rows()) return;
-    const auto n_first = static_cast<Index>(n_bytes_ / (8 * std::uint64_t{page.nx}));
+    const auto n_justified = static_cast<Index>(n_bytes_ / (8 * std::uint64_t{page.nx}));
+    const Index n_first = page.compression == COMPRESSION_NONE ? page.ny : n_justified;
     const Index wanted = std::max({iy + 1, 2 * iy, n_first});
     values.conservativeResize(std::min<Index>(wanted, page.ny), page.nx);
   }

@@ -7,6 +7,7 @@
 
 #include "manoscope/io/writer.hpp"
 #include "manoscope/pipeline/test_experiment.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::pipeline {
 namespace {
@@ -27,7 +28,7 @@ void spoil_checksum(const std::filesystem::path& path) {
                            "        if name == 'md5checksum.hex':\n"
                            "            data = b'0' * 32 + data[32:]\n"
                            "        new.writestr(name, data)\n";
-  const std::string command = std::string(MANOSCOPE_PYTHON) + " " + script.string() + " " +
+  const std::string command = std::string(test_paths::python) + " " + script.string() + " " +
                               x3p.string() + " " + path.string();
   ASSERT_EQ(std::system(command.c_str()), 0);
 }

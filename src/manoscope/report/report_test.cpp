@@ -14,6 +14,7 @@
 #include "manoscope/report/wording.hpp"
 #include "tests/support/changed_environment.hpp"
 #include "tests/support/example_measurement.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace manoscope::report {
@@ -53,7 +54,7 @@ void expect_well_formed(const std::vector<ExtraFile>& files) {
   }
   if (paths.empty()) return;
   const std::string command =
-      std::string(MANOSCOPE_PYTHON) +
+      std::string(test_paths::python) +
       " -c 'import sys, xml.dom.minidom as d; [d.parse(p) for p in sys.argv[1:]]'" + paths;
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
@@ -88,8 +89,9 @@ if "url(http" in text or "@import" in text: sys.exit("style loads something")
 check.feed(text); check.close()
 sys.exit(f"left open: {check.open}" if check.open else 0)
 )";
-  const std::string command = std::string(MANOSCOPE_PYTHON) + " " + (folder / "check.py").string() +
-                              " " + (folder / "page.html").string();
+  const std::string command = std::string(test_paths::python) + " " +
+                              (folder / "check.py").string() + " " +
+                              (folder / "page.html").string();
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 

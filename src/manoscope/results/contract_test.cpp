@@ -6,6 +6,7 @@
 
 #include "manoscope/results/write.hpp"
 #include "tests/support/example_measurement.hpp"
+#include "tests/support/paths.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace manoscope::results {
@@ -21,7 +22,7 @@ struct Outcome {
 };
 
 Outcome run_python(const std::string& arguments) {
-  const std::string command = std::string(MANOSCOPE_PYTHON) + " " + arguments + " 2>&1";
+  const std::string command = std::string(test_paths::python) + " " + arguments + " 2>&1";
   Outcome outcome;
   FILE* pipe = ::popen(command.c_str(), "r");
   std::array<char, 4096> buffer{};
@@ -37,7 +38,7 @@ bool python_is_equipped() {
 }
 
 Outcome check_contract(const fs::path& path) {
-  return run_python(std::string(MANOSCOPE_SOURCE_DIR "/tests/python/result_contract_test.py '") +
+  return run_python(std::string(test_paths::source) + "/tests/python/result_contract_test.py '" +
                     path.string() + "'");
 }
 

@@ -9,6 +9,7 @@
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/core/unit_text.hpp"
 #include "tests/support/example_measurement.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::results {
 namespace {
@@ -63,7 +64,7 @@ TEST(Schema, PrintsOneLineAVariable) {
 
 TEST(Schema, IsTheTableOfTheManual) {
   const std::string page =
-      read_file(std::filesystem::path(MANOSCOPE_SOURCE_DIR) / "docs" / "result-file.md");
+      read_file(std::filesystem::path(test_paths::source) / "docs" / "result-file.md");
   EXPECT_NE(page.find(schema_as_markdown()), std::string::npos)
       << "put this into docs/result-file.md:\n"
       << schema_as_markdown();

@@ -9,6 +9,7 @@
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/twin/scenario.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::twin {
 namespace {
@@ -28,7 +29,7 @@ std::vector<std::string> code_words(const std::string& cell) {
 /// Defaults by key, of the tables behind a place of the page up to the next section of keys.
 std::map<std::string, std::string> defaults_after(const std::string& start) {
   const std::string page =
-      read_file(std::string(MANOSCOPE_SOURCE_DIR) + "/docs/virtual-experiments.md");
+      read_file(std::string(test_paths::source) + "/docs/virtual-experiments.md");
   const std::size_t from = page.find(start);
   EXPECT_NE(from, std::string::npos) << start;
   std::map<std::string, std::string> defaults;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "manoscope/core/error.hpp"
+#include "tests/support/paths.hpp"
 
 namespace manoscope::twin {
 namespace {
@@ -72,7 +73,7 @@ TEST_F(TruthFile, NamesWhatIsWrongWithATable) {
 }
 
 TEST(Truth, OfThePracticeExperimentsCanBeRead) {
-  const auto folder = std::filesystem::path(MANOSCOPE_SHARED_DIR) / "data/practice/S1";
+  const auto folder = std::filesystem::path(test_paths::shared) / "data/practice/S1";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no practice experiment " << folder;
   const Truth truth = read_truth(folder);
   ASSERT_EQ(truth.runs.size(), 8u);
