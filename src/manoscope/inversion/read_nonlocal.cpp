@@ -1,0 +1,338 @@
+#include "manoscope/inversion/read_nonlocal.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/numerics/natural_spline.hpp"
+#include "manoscope/numerics/penalised_fit.hpp"
+
+namespace manoscope::inversion {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+constexpr double kEndGap = 0.08;      // widths: nearer stations do not take part
+constexpr double kCorrelation = 0.3;  // widths, of errors of curves and model along x
+constexpr double kEndZone = 0.5;      // widths, where p may bend more sharply
+constexpr double kFirstRipple = 0.6;  // widths, before the kernel is known
+constexpr int kMostIterations = 10, kFreeIterations = 4;
+constexpr double kStepShare = 0.05;  // of the local reading's mean standard uncertainty
+constexpr double kHuber = 2.5;       // pulls beyond count as if they grew no more (Huber 1964)
+constexpr Index kFewestStations = 20;
+
+/// Modes of a covariance, leaving out what is below 1e-8 of its trace.
+void add_modes(const Matrix& covariance, const Matrix& sampling, const std::string& name,
+               const std::string& source, std::vector<ErrorMode>& modes) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> solver(covariance);
+  const double least = 1e-8 * covariance.trace();
+  for (Index j = covariance.rows() - 1; j >= 0; --j) {
+    const double variance = solver.eigenvalues()[j];
+    if (!(variance > least)) continue;
+    modes.push_back({fmt::format("{} {}", name, covariance.rows() - j), source,
+                     (sampling * solver.eigenvectors().col(j) * std::sqrt(variance)).array()});
+  }
+}
+
+/// Square root of the sum of squares of the effects of one source.
+Array1 effect_of(const PressureReading& reading, const std::string& source) {
+  Array1 squares = Array1::Zero(reading.x.size());
+  for (const ErrorMode& mode : reading.uncertainty.modes) {
+    if (mode.source == source) squares += mode.effect.square();
+  }
+  return squares.sqrt();
+}
+
+class Reader {
+ public:
+  Reader(const PressureReading& local, const NonlocalWall& wall, const ReadNonlocalOptions& options)
+      : local_(local),
+        wall_(wall),
+        options_(options),
+        width_(wall.calibrated.wall.width.si()),
+        length_(wall.calibrated.wall.length.si()),
+        nodes_(wall.response->nodes()),
+        spline_(nodes_),
+        inner_(nodes_.segment(1, nodes_.size() - 2)),
+        sampling_(spline_.sampling(local.x)),
+        inner_sampling_(inner_.sampling(local.x)),
+        interpolation_(effect_of(local, "interpolation")),
+        labels_(effect_of(local, "pressure labels")) {
+    for (Index i = 0; i < local.x.size(); ++i) {
+      const double distance = std::min(local.x[i], length_ - local.x[i]);
+      if (local.answered(i) && distance > kEndGap * width_) used_.push_back(i);
+    }
+    trust_ = Array1::Ones(static_cast<Index>(used_.size()));
+    const Array1 standard = local.uncertainty.standard();
+    for (const Index i : used_) enough_ += kStepShare * standard[i];
+    enough_ /= std::max(1.0, static_cast<double>(used_.size()));
+    for (const double sharper : {0.0, 1e1, 1e2, 1e3, 1e4, 1e5}) penalties_.push_back(bend(sharper));
+  }
+
+  bool enough() const { return static_cast<Index>(used_.size()) >= kFewestStations; }
+
+  std::optional<NonlocalReading> run(double coverage) {
+    const Index n = nodes_.size();
+    WallResponse::Answer answer{start(), Matrix::Identity(n, n)};
+    Vector pressure = answer.reading;
+    double ripple = kFirstRipple * width_;
+    NonlocalReading result;
+    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+      if (iteration > 0) {
+        answer = wall_.response->answer(pressure);
+        result.half_wavelength = wall_.response->half_wavelength(answer.kernel, n / 2);
+        if (result.half_wavelength > 0.0) ripple = result.half_wavelength;
+        ++result.iterations;
+      }
+      const Vector before = pressure;
+      // The choice of the weight may go back and forth: after a few steps it stays.
+      if (iteration >= kFreeIterations && !settled_) settled_ = chosen_;
+      const Step step = solve(pressure, answer, options_.finest_ripple * ripple);
+      trust_ = step.trust;
+      chosen_ = Choice{step.fit.penalty, step.fit.weight};
+      pressure = spline_.from_coefficients() * step.fit.coefficients;
+      if (!pressure.allFinite()) return std::nullopt;
+      const double moved = std::sqrt((pressure - before).squaredNorm() / static_cast<double>(n));
+      if (iteration > 1 && moved < enough_) {
+        result.misfit = step.fit.misfit / static_cast<double>(used_.size());
+        result.pressure = finish(pressure, answer, step, coverage);
+        return result;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Step {
+    numerics::PenalisedFit fit;
+    Matrix gain;   ///< (n, n_used) of the node values by the stations' readings
+    Array1 noise;  ///< (n_used) Pa2, the stations' own variance
+    Array1 trust;  ///< (n_used) share of its weight that a station keeps
+  };
+
+  numerics::Penalty bend(double sharper) const {
+    const Array1 x = nodes_.segment(1, nodes_.size() - 2);
+    const double zone = kEndZone * width_;
+    const Array1 stiffness =
+        1.0 /
+        (1.0 + sharper * ((-(x / zone).square()).exp() + (-((length_ - x) / zone).square()).exp()));
+    return {spline_.roughness(stiffness), stiffness.log().sum(), x.size()};
+  }
+
+  /// The local reading at the nodes; near the ends, where it is biased, a line through the rest.
+  Vector start() const {
+    const double margin = width_;
+    double count = 0.0, sx = 0.0, sxx = 0.0, sy = 0.0, sxy = 0.0;
+    for (const Index i : used_) {
+      const double x = local_.x[i], y = local_.pressure[i];
+      if (x < margin || x > length_ - margin) continue;
+      count += 1.0;
+      sx += x;
+      sxx += x * x;
+      sy += y;
+      sxy += x * y;
+    }
+    const double determinant = count * sxx - sx * sx;
+    const double slope = determinant > 0.0 ? (count * sxy - sx * sy) / determinant : 0.0;
+    const double level = count > 0.0 ? (sy - slope * sx) / count : local_.pressure[used_.front()];
+    return (level + slope * nodes_).matrix();
+  }
+
+  /// R at the stations: p there plus the correction, which is smooth and unknown at the very ends.
+  Array1 correction(const WallResponse::Answer& answer, const Vector& pressure) const {
+    const Vector difference = answer.reading - pressure;
+    return (inner_sampling_ * difference.segment(1, nodes_.size() - 2)).array();
+  }
+
+  Step solve(const Vector& pressure, const WallResponse::Answer& answer, double ripple) const {
+    const Index n = nodes_.size(), m = static_cast<Index>(used_.size());
+    const Array1 off = correction(answer, pressure);
+    const Matrix change = (answer.kernel - Matrix::Identity(n, n)).middleRows(1, n - 2);
+    const Vector uniform = inner_sampling_ * change.rowwise().sum();
+    const double spacing =
+        (local_.x[local_.x.size() - 1] - local_.x[0]) / static_cast<double>(local_.x.size() - 1);
+    const double together = std::max(1.0, kCorrelation * width_ / spacing);
+    Step step;
+    step.noise.resize(m);
+    Array1 variance(m);
+    Vector target(m);
+    Matrix model(m, n);
+    for (Index a = 0; a < m; ++a) {
+      const Index i = used_[static_cast<std::size_t>(a)];
+      const double own = local_.uncertainty.independent[i];
+      step.noise[a] = own * own;
+      const double doubt = interpolation_[i] * interpolation_[i] +
+                           std::pow(wall_.calibrated.model_error * off[i], 2) +
+                           std::pow(labels_[i] * uniform[i], 2);
+      variance[a] = std::max(own * own, 1e-12) + together * doubt;
+      model.row(a) = sampling_.row(i) + inner_sampling_.row(i) * change;
+      target[a] =
+          local_.pressure[i] - off[i] - sampling_.row(i).dot(pressure) + model.row(a).dot(pressure);
+    }
+    model = model * spline_.from_coefficients();
+    const Array1 weight = trust_ / variance;
+    const Matrix weighted = weight.matrix().asDiagonal() * model;
+    const numerics::NormalEquations data{model.transpose() * weighted,
+                                         weighted.transpose() * target,
+                                         (weight * target.array().square()).sum()};
+    // A smoothing spline passes half of a ripple if weight (2 pi/ripple)^4 is the density of the
+    // stations over their variance (Green & Silverman 1994, sec. 3.7).
+    const double floor = weight.mean() / spacing * std::pow(ripple / (2.0 * std::numbers::pi), 4);
+    step.fit = settled_ ? numerics::fit_penalised(data, {penalties_[settled_->penalty]},
+                                                  {settled_->weight, 0})
+                        : numerics::fit_penalised(data, penalties_, {floor, 24});
+    if (settled_) step.fit.penalty = settled_->penalty;
+    const Array1 pull =
+        ((target - model * step.fit.coefficients).array().square() / variance).sqrt();
+    step.trust = (kHuber / pull.max(kHuber));
+    step.gain = spline_.from_coefficients() * step.fit.covariance * weighted.transpose();
+    return step;
+  }
+
+  PressureReading finish(const Vector& pressure, const WallResponse::Answer& answer,
+                         const Step& step, double coverage) const {
+    PressureReading reading;
+    reading.x = local_.x;
+    reading.pressure = (sampling_ * pressure).array();
+    reading.slope = local_.slope;
+    reading.flags = local_.flags;
+    const Matrix& nodes = spline_.from_coefficients();
+    const Matrix all = nodes * step.fit.covariance * nodes.transpose();
+    const Matrix pixels = step.gain * step.noise.matrix().asDiagonal() * step.gain.transpose();
+    auto& modes = reading.uncertainty.modes;
+    add_modes(pixels, sampling_, "reading", "pixel noise", modes);
+    add_modes(all - pixels, sampling_, "smoothness", "smoothness", modes);
+    const auto m = static_cast<Index>(used_.size());
+    for (const ErrorMode& mode : local_.uncertainty.modes) {
+      Vector effect(m);
+      for (Index a = 0; a < m; ++a) effect[a] = mode.effect[used_[static_cast<std::size_t>(a)]];
+      modes.push_back({mode.variable, mode.source, (sampling_ * (step.gain * effect)).array()});
+    }
+    const Array1 off = wall_.calibrated.model_error * correction(answer, pressure);
+    const Array1 before = (reading.x < 0.5 * length_).cast<double>();
+    modes.push_back({"wall model, inlet half", "wall model", off * before});
+    modes.push_back({"wall model, outlet half", "wall model", off * (1.0 - before)});
+    reading.uncertainty.independent = Array1::Zero(reading.x.size());
+    for (Index i = 0; i < reading.x.size(); ++i) {
+      if (reading.answered(i)) continue;
+      reading.pressure[i] = 0.0;
+      for (ErrorMode& mode : modes) mode.effect[i] = 0.0;
+    }
+    form_interval(reading, coverage);
+    return reading;
+  }
+
+  const PressureReading& local_;
+  const NonlocalWall& wall_;
+  const ReadNonlocalOptions& options_;
+  double width_, length_;
+  Array1 nodes_;
+  numerics::NaturalSpline spline_, inner_;
+  Matrix sampling_, inner_sampling_;
+  Array1 interpolation_, labels_;
+  std::vector<Index> used_;
+  std::vector<numerics::Penalty> penalties_;
+  Array1 trust_;         ///< (n_used) of the last step
+  double enough_ = 0.0;  ///< Pa: a step that moves p by less on average is the last
+  struct Choice {
+    std::size_t penalty;
+    double weight;
+  };
+  std::optional<Choice> chosen_, settled_;
+};
+
+/// Pressures to solve the wall at, ascending and apart, and which of them stands for each level.
+struct ModelLevels {
+  Array1 pressure;
+  std::vector<Index> of_level;
+};
+
+ModelLevels model_levels(const Array1& estimates) {
+  constexpr double kApart = 2e-4;  // of the range
+  std::vector<Index> order(static_cast<std::size_t>(estimates.size()));
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<Index>(k);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return estimates[a] < estimates[b]; });
+  const double apart = kApart * (estimates.maxCoeff() - estimates.minCoeff());
+  std::vector<double> pressures;
+  ModelLevels levels;
+  levels.of_level.resize(order.size());
+  for (const Index k : order) {
+    if (pressures.empty() || estimates[k] > pressures.back() + apart) {
+      pressures.push_back(estimates[k]);
+    }
+    levels.of_level[static_cast<std::size_t>(k)] = static_cast<Index>(pressures.size()) - 1;
+  }
+  levels.pressure =
+      Eigen::Map<const Array1>(pressures.data(), static_cast<Index>(pressures.size()));
+  return levels;
+}
+
+}  // namespace
+
+void ReadNonlocalOptions::validate() const {
+  if (!(finest_ripple >= 0.1 && finest_ripple <= 10.0)) {
+    throw InputError("--finest-ripple", fmt::format("is {}", finest_ripple),
+                     "Give a number from 0.1 to 10");
+  }
+  if (!(largest_model_error > 0.0 && largest_model_error <= 1.0)) {
+    throw InputError("--largest-model-error", fmt::format("is {}", largest_model_error),
+                     "Give a number above 0, at most 1");
+  }
+}
+
+std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCurves& curves,
+                                               const WallKnowledge& known,
+                                               const ReadNonlocalOptions& options,
+                                               const Monitor& monitor, std::string& reason) {
+  options.validate();
+  constexpr double kPerMisfit = 3.0, kLeastError = 0.01;
+  auto calibrated = calibrate_wall(curves, known, reason);
+  if (!calibrated) return std::nullopt;
+  const ModelLevels levels = model_levels(curves.level_pressure);
+  if (levels.pressure.size() < 3) {
+    reason = "fewer than three levels";
+    return std::nullopt;
+  }
+  NonlocalWall wall;
+  try {
+    wall.response =
+        std::make_shared<const WallResponse>(calibrated->wall, levels.pressure, monitor);
+  } catch (const InputError& error) {
+    reason = fmt::format("{} {}", error.where(), error.found());
+    return std::nullopt;
+  }
+  const Array2 profiles = wall.response->profiles(curves.x);
+  Array2 model(static_cast<Index>(levels.of_level.size()), curves.x.size());
+  for (std::size_t k = 0; k < levels.of_level.size(); ++k) {
+    model.row(static_cast<Index>(k)) = profiles.row(levels.of_level[k]);
+  }
+  calibrated->model_error =
+      std::max(kLeastError, kPerMisfit * end_misfit(curves, model, known.length, known.width));
+  if (calibrated->model_error > options.largest_model_error) {
+    reason = fmt::format("a uniform clamped wall is off by {:.0f} % near the ends",
+                         100.0 * calibrated->model_error);
+    return std::nullopt;
+  }
+  wall.calibrated = *calibrated;
+  return wall;
+}
+
+std::optional<NonlocalReading> read_nonlocal(const PressureReading& local, const NonlocalWall& wall,
+                                             double coverage, const ReadNonlocalOptions& options) {
+  options.validate();
+  Reader reader(local, wall, options);
+  if (!reader.enough()) return std::nullopt;
+  try {
+    return reader.run(coverage);
+  } catch (const InputError&) {
+    return std::nullopt;  // the wall model has no equilibrium there
+  }
+}
+
+}  // namespace manoscope::inversion

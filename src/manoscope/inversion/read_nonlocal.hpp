@@ -1,0 +1,92 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "manoscope/core/monitor.hpp"
+#include "manoscope/inversion/calibrate_wall.hpp"
+#include "manoscope/inversion/read_pressure.hpp"
+#include "manoscope/inversion/wall_response.hpp"
+
+namespace manoscope::inversion {
+
+struct ReadNonlocalOptions {
+  bool nonlocal = true;  ///< off: every station on its own
+  /// Finest ripple of p(x) that is looked for away from the ends, as a share of the wavelength of
+  /// which the wall itself shows half.
+  double finest_ripple = 0.7;
+  /// A wall model whose profiles near the ends are off by more than this share is not used.
+  double largest_model_error = 0.2;
+
+  template <class Visitor>
+  void describe(Visitor&& visit) {
+    visit("nonlocal", nonlocal,
+          "read p(x) through the influence operator of a wall fitted to the calibration");
+    visit("finest-ripple", finest_ripple,
+          "finest ripple of p(x) looked for, as a share of the wall's half-response wavelength");
+    visit("largest-model-error", largest_model_error,
+          "largest relative misfit of the wall model near the ends");
+  }
+  /// @throws InputError naming the option out of range.
+  void validate() const;
+};
+
+/// The wall model that non-local readings of one calibration share.
+struct NonlocalWall {
+  CalibratedWall calibrated;
+  std::shared_ptr<const WallResponse> response;
+};
+
+/// Fits a wall to the calibration and solves it at the levels.
+///
+/// @return none where there is no such wall, with the reason in words.
+/// @throws Interrupted if the monitor says so.
+std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCurves& curves,
+                                               const WallKnowledge& known,
+                                               const ReadNonlocalOptions& options,
+                                               const Monitor& monitor, std::string& reason);
+
+/// A reading that takes the wall's neighbourhood into account.
+struct NonlocalReading {
+  PressureReading pressure;
+  /// m: of a ripple of this wavelength, at mid-channel, the reading shows half.
+  double half_wavelength = 0.0;
+  double misfit = 0.0;  ///< chi-square of the stations against the smooth p(x), per station
+  int iterations = 0;   ///< wall states solved
+};
+
+/// Reads p(x) as the pressure whose wall response gives the observed deflection.
+///
+/// A station-by-station reading r(x) of the deflection (read_pressure()) is R[p](x) of
+/// WallResponse plus noise. p is a natural cubic spline through the response's nodes that minimises
+///
+///   sum_i (r_i - R[p](x_i))^2 / v_i + weight int p''(x)^2 / s(x) dx,
+///
+/// by Gauss-Newton steps with the exact kernel dR/dp. The weight, and by how much p may bend more
+/// sharply within half a width of the ends (s = 1 + V exp(-(2 d/w)^2), V from 0 to 1e5), are those
+/// that make the data most likely (numerics::fit_penalised()), but never so small that ripples
+/// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
+/// station's own noise, and as noise of a correlation length of 0.3 widths: the doubt of
+/// interpolation, model_error times the correction R - p, and the labels' uncertainty where the
+/// correction changes with pressure as such (at a buckling front).
+///
+/// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, "smoothness"
+/// for the rest); every mode of the station-by-station reading carried through the same linear
+/// estimate; and model_error times the correction, one variable for each half of the channel
+/// ("wall model").
+///
+/// Stations without an answer stay without; stations nearer to an end than 8 % of the width do not
+/// take part, and are read off the spline.
+///
+/// Source: our own. The kernel's reach is the wall's own (about w/pi under tension); see
+/// docs/accuracy.md for errors on virtual experiments.
+///
+/// @param local  of the same stations as the curves of the calibration; without end doubt.
+/// @return none where the steps do not converge: the local reading stands then.
+/// @throws InputError if an option is out of range; Interrupted.
+std::optional<NonlocalReading> read_nonlocal(const PressureReading& local, const NonlocalWall& wall,
+                                             double coverage,
+                                             const ReadNonlocalOptions& options = {});
+
+}  // namespace manoscope::inversion
