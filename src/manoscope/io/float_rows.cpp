@@ -19,7 +19,7 @@ namespace manoscope::io {
 namespace {
 
 /// A piece: small enough for the processor's second cache, large enough that calls cost little.
-constexpr std::size_t kPiece = std::size_t{128} << 10;
+constexpr std::size_t kPiece = std::size_t{256} << 10;
 /// Enough for a header.
 constexpr std::size_t kHead = 4096;
 /// Rows are handed over by so many where there are, which suits whoever takes several at a time.
