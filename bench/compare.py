@@ -20,6 +20,10 @@ HERE = Path(__file__).resolve().parent
 # Both sides do the same sums in another order, on heights of up to 25 um.
 ZETA_TOLERANCE_M = 1e-14
 UNCERTAINTY_TOLERANCE = 1e-6  # relative
+PLACE_TOLERANCE_M = 1e-12  # of where a wall lies, along and across the flow
+# What the ratios ought to be; a miss is told and is no failure, for speed is no test.
+GOAL_NUMPY_REDUCTION, GOAL_NUMPY_ONE_PASS = 5.0, 10.0
+GOAL_OVER_READ, GOAL_TWO_THREADS = 1.5, 1.7
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
                                      "BLIS_NUM_THREADS", "NUMEXPR_NUM_THREADS")}
 
@@ -62,12 +66,16 @@ def largest_difference(ours, theirs, key, relative=False):
 def check_agreement(ours, theirs):
     """Largest differences; ends the run if one is beyond round-off."""
     for one, other in zip(ours, theirs, strict=True):
-        for key in ("hash", "flags"):
+        for key in ("hash", "flags", "moved"):
             if one.get(key) != other.get(key):
                 sys.exit(f"the two sides differ in {key}: a benchmark of wrong results is void")
     stations = sum(flag == 0 for one in ours for flag in one["flags"])
     if stations < 0.9 * sum(len(one["flags"]) for one in ours):
         sys.exit("most stations are flagged: a benchmark of empty results is void")
+    for one, other in zip(ours, theirs):
+        for key in ("shift_m", "middle_m"):
+            if abs(one.get(key, 0.0) - other.get(key, 0.0)) > PLACE_TOLERANCE_M:
+                sys.exit(f"the two sides differ in {key}: a benchmark of wrong results is void")
     found = {"zeta_m": largest_difference(ours, theirs, "zeta_m"),
              "uncertainty_relative": largest_difference(ours, theirs, "uncertainty_m", True)}
     if not (found["zeta_m"] <= ZETA_TOLERANCE_M and
@@ -189,8 +197,15 @@ def time_measure(manoscope, repetitions, experiment, out):
     return table
 
 
+def judged(ratio, goal, at_most=False):
+    reached = ratio <= goal if at_most else ratio >= goal
+    return (f"{ratio:.2f}, goal {'at most' if at_most else 'at least'} {goal:g}: "
+            f"{'reached' if reached else 'MISSED'}")
+
+
 def print_reduction(table):
-    print(f"\nReduction of {table['maps']} maps of 1024 x 192, from page cache, one thread; "
+    print(f"\nReduction and registration of {table['maps']} maps of 1024 x 192, from page cache, one "
+          "thread; "
           f"median of {table['repetitions']}")
     print(f"{'':24}{'wall s':>9}{'cpu s':>9}{'ms a map':>10}{'peak MB':>9}")
     for name in ("manoscope", "numpy"):
@@ -199,6 +214,7 @@ def print_reduction(table):
               f"{1e3 * row['wall_s'] / table['maps']:10.2f}{row['peak_MB']:9.1f}")
     print(f"{'numpy / manoscope':24}{table['ratio']:9.2f}{table['ratio_cpu']:9.2f}")
     print(f"{'reading the bytes alone':24}{table['read_s']:9.3f}")
+    print(f"numpy / manoscope, processor time: {judged(table['ratio_cpu'], GOAL_NUMPY_REDUCTION)}")
     difference = table["largest_difference"]
     print(f"largest difference of zeta {difference['zeta_m']:.1g} m, of its uncertainty "
           f"{difference['uncertainty_relative']:.1g} relative")
@@ -218,6 +234,10 @@ def print_linear(table):
         gain = row["one"]["least_s"] / row["two"]["least_s"]
         print(f"{kind + ', a map':24}{read:9.3f}{one:9.3f}{numpy:10.3f}{row['over_read']:8.2f}"
               f"{row['numpy_over']:9.2f}{gain:11.2f}")
+        print(f"  {kind}, manoscope / read(): {judged(row['over_read'], GOAL_OVER_READ, True)}\n"
+              f"  {kind}, numpy / manoscope: {judged(row['numpy_over'], GOAL_NUMPY_ONE_PASS)}\n"
+              f"  {kind}, one thread / two, wall time, which means something on an idle machine only: "
+              f"{judged(gain, GOAL_TWO_THREADS)}")
 
 
 def print_program(title, table):

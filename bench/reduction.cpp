@@ -1,13 +1,14 @@
 // Our side of the reduction benchmark: obeys compare.py line by line, as reduction.py does.
 //
 // bench_reduction INPUTS.json; then on standard input
-//   reduce      read, hash and reduce every map once
+//   reduce      read, hash, reduce and register every map once
 //   read        read the bytes of every map and drop them
 //   save FILE   write what the last reduction gave, as JSON
 // Each line is answered by one JSON line: wall and processor seconds, peak resident memory.
 #include <malloc.h>
 
 #include <cstdio>
+#include <iterator>
 
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/io/reader.hpp"
@@ -18,43 +19,75 @@ namespace manoscope::bench {
 namespace {
 
 struct Reduced {
-  std::string hash;
-  maps::ReducedMap map;
+  std::vector<std::string> hashes;
+  std::vector<maps::ReducedMap> maps;
+  std::vector<double> middles;  ///< m, of the wall across the flow at mid-channel
+  std::vector<bool> moved;      ///< whether it lies elsewhere across the flow than the others
 };
 
-/// As pipeline::reduce_maps() with one thread.
-std::vector<Reduced> reduce_all(const std::vector<std::string>& files, const ChannelFrame& frame) {
-  std::vector<Reduced> all;
-  for (const std::string& file : files) {
-    std::string hash = sha256(read_file(file));
-    all.push_back({std::move(hash), maps::reduce_map(io::read_height_map(file), frame, {}, file)});
+/// As pipeline::reduce_maps() with one thread, but for walls that lie elsewhere across the flow:
+/// they are found, not reduced once more in their place. Every second map, from the first, is
+/// hydrostatic.
+Reduced reduce_all(const std::vector<std::string>& files, const ChannelFrame& frame) {
+  Reduced all;
+  std::vector<maps::ReducedMap> kinds[2];
+  Length pitch_z{};
+  maps::ReduceOptions options;
+  options.fringe_order = false;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& file = files[i];
+    all.hashes.push_back(sha256(read_file(file)));
+    const HeightMap map = io::read_height_map(file);
+    pitch_z = map.grid().pitch_y;
+    kinds[i % 2].push_back(maps::reduce_map(map, frame, {}, file, options));
+  }
+  auto& [hydrostatic, flow] = kinds;
+  const std::size_t n_hydrostatic = hydrostatic.size();
+  std::vector<maps::ReducedMap> both = std::move(hydrostatic);
+  std::move(flow.begin(), flow.end(), std::back_inserter(both));
+  const maps::Placements placements =
+      maps::find_placements(both, n_hydrostatic, frame.length, pitch_z);
+  const auto middle = both.begin() + static_cast<std::ptrdiff_t>(n_hydrostatic);
+  hydrostatic.assign(std::make_move_iterator(both.begin()), std::make_move_iterator(middle));
+  flow.assign(std::make_move_iterator(middle), std::make_move_iterator(both.end()));
+  maps::register_maps(hydrostatic, flow, frame.length, frame.width, options);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    all.maps.push_back(std::move(kinds[i % 2][i / 2]));
+    const auto& centre = all.maps.back().condition.centre;
+    all.middles.push_back(centre ? centre->offset.si() : 0.0);
+    const auto& own = placements.own[i % 2 * n_hydrostatic + i / 2];
+    all.moved.push_back(own.farthest(frame.length.si()) != 0.0);
   }
   return all;
 }
 
-nlohmann::json as_json(const Reduced& reduced) {
-  const Profile& profile = reduced.map.profile;
+nlohmann::json as_json(const Reduced& all, std::size_t i) {
+  const maps::ReducedMap& map = all.maps[i];
+  const Profile& profile = map.profile;
   const auto list = [](const auto& array) {
     return std::vector<double>(array.data(), array.data() + array.size());
   };
-  return {{"hash", reduced.hash},
+  return {{"hash", all.hashes[i]},
           {"x_m", list(profile.x)},
           {"zeta_m", list(profile.zeta)},
           {"uncertainty_m", list(profile.uncertainty.standard())},
           {"flags", std::vector<int>(profile.flags.begin(), profile.flags.end())},
-          {"noise_m", reduced.map.condition.noise.sigma.si()},
-          {"noise_length_x", reduced.map.condition.noise.length_x},
-          {"noise_length_z", reduced.map.condition.noise.length_z},
-          {"spikes", reduced.map.condition.spikes},
-          {"crest_m", reduced.map.crest},
-          {"crest_uncertainty_m", reduced.map.crest_uncertainty}};
+          {"noise_m", map.condition.noise.sigma.si()},
+          {"noise_length_x", map.condition.noise.length_x},
+          {"noise_length_z", map.condition.noise.length_z},
+          {"spikes", map.condition.spikes},
+          {"shift_m", map.condition.shift.shift.si()},
+          {"middle_m", all.middles[i]},
+          {"moved", static_cast<bool>(all.moved[i])},
+          {"crest_m", map.crest},
+          {"crest_uncertainty_m", map.crest_uncertainty}};
 }
 
 void obey_all(const std::string& inputs_file) {
   const nlohmann::json inputs = read_json(inputs_file);
   const auto files = inputs.at("maps").get<std::vector<std::string>>();
   const ChannelFrame frame = frame_of(inputs);
-  std::vector<Reduced> last;
+  Reduced last;
   obey_lines([&](const std::string& line) {
     if (line == "reduce") {
       last = reduce_all(files, frame);
@@ -62,7 +95,9 @@ void obey_all(const std::string& inputs_file) {
       read_all(files, std::size_t{1} << 20);
     } else if (line.starts_with("save ")) {
       nlohmann::json all;
-      for (const Reduced& reduced : last) all.push_back(as_json(reduced));
+      for (std::size_t i = 0; i < last.maps.size(); ++i) {
+        all.push_back(as_json(last, i));
+      }
       std::ofstream(line.substr(5)) << all;
     } else {
       throw std::runtime_error("unknown order: " + line);

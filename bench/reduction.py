@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""The numpy side of the reduction benchmark: the same work as maps::reduce_map(), vectorised.
+"""The numpy side of the reduction benchmark: the same work as maps::reduce_map() and
+maps::register_maps(), vectorised.
 
 Obeys compare.py line by line, as bench_reduction does (see reduction.cpp). Everything that depends
 on the grid alone (rim, coordinates, width weights) is computed once a run, not once a map.
@@ -10,6 +11,8 @@ import sys
 import time
 
 import numpy as np
+
+import registration
 
 NO_DATA = 1
 MAD = 1.482602218505602
@@ -74,6 +77,7 @@ class Geometry:
         weight[2:-1] += 0.5 * np.diff(nodes[1:-1])
         self.nodes, self.inner_weight = nodes, weight
         self.patch = self._crest_patch()
+        self.stretches = registration.Stretches(self.x, pitch_x, self.length, self.width)
 
     def _crest_patch(self):
         reach_x = max(0.025 * self.width, 1.01 * self.pitch_x)
@@ -324,18 +328,23 @@ def reduce_map(data, geometry, inputs):
     quadrature = zeta * (pitch_z / inputs["width_m"]) ** 2
     modes = np.column_stack([design @ np.linalg.cholesky(covariance), quadrature])
     shift = slope_along(x, zeta, flags) * g.pitch_x / np.sqrt(12.0)
+    height[~good] = 0.0  # spikes
+    centre = registration.centre_line(g, height, good, noise)
     top, top_sigma = crest(g, height, good, noise, shared, covariance[0, 0])
     return geometry, {
         "hash": digest, "x_m": x, "zeta_m": zeta, "independent": independent, "modes": modes,
         "shift": shift, "flags": flags, "noise_m": noise, "noise_length_x": length_x,
         "noise_length_z": length_z, "spikes": spikes / height.size, "crest_m": top,
+        "centre": centre,
         "crest_uncertainty_m": top_sigma}
 
 
 def as_json(reduced):
-    result = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in reduced.items()}
+    result = {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in reduced.items()
+              if k not in ("centre", "good")}
     result["uncertainty_m"] = np.sqrt(reduced["independent"] ** 2 + reduced["shift"] ** 2 +
                                       (reduced["modes"] ** 2).sum(axis=1)).tolist()
+    result["middle_m"] = reduced["centre"][0] if reduced["centre"] else 0.0
     for name in ("independent", "modes", "shift"):
         del result[name]
     return result
@@ -353,6 +362,12 @@ def reduce_all(inputs):
             data = file.read()
         geometry, result = reduce_map(data, geometry, inputs)
         results.append(result)
+    hydrostatic = [i % 2 == 0 for i in range(len(results))]
+    lines = [result["centre"] for result in results]
+    moved = registration.moved(lines, hydrostatic, geometry.length, geometry.pitch_z)
+    for i, result in enumerate(results):
+        result["moved"] = i in moved
+    registration.register(results, hydrostatic, geometry.length, geometry.width, geometry.pitch_x)
     return results
 
 

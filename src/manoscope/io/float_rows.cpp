@@ -19,7 +19,7 @@ namespace manoscope::io {
 namespace {
 
 /// A piece: small enough for the processor's second cache, large enough that calls cost little.
-constexpr std::size_t kPiece = std::size_t{128} << 10;
+constexpr std::size_t kPiece = std::size_t{256} << 10;
 /// Enough for a header.
 constexpr std::size_t kHead = 4096;
 /// Rows are handed over by so many where there are, which suits whoever takes several at a time.
@@ -27,19 +27,30 @@ constexpr std::uint64_t kTogether = 8;
 
 }  // namespace
 
-FloatRows::FloatRows(const std::filesystem::path& path) : path_(path) {
+void PieceBuffer::make_room(std::size_t n_bytes, std::size_t n_kept) {
+  constexpr std::size_t kLine = 64;
+  if (capacity_ >= n_bytes) return;
+  auto larger = std::make_unique_for_overwrite<char[]>(n_bytes + kLine);
+  const auto over = reinterpret_cast<std::uintptr_t>(larger.get()) % kLine;
+  char* const to = larger.get() + (over == 0 ? 0 : kLine - over);
+  if (n_kept > 0) std::memcpy(to, data_, n_kept);
+  space_ = std::move(larger);
+  data_ = to;
+  capacity_ = n_bytes;
+}
+
+FloatRows::FloatRows(const std::filesystem::path& path, PieceBuffer* lent)
+    : path_(path), buffer_(lent != nullptr ? lent : &own_) {
   open();
-  make_room(kPiece);
-  capacity_ = kHead;
-  fill();
-  const void* const nul = std::memchr(buffer_, 0, end_);
-  if (nul == nullptr || static_cast<const char*>(nul) + 4 > buffer_ + end_) {
-    capacity_ = kPiece;  // a header longer than any we know
-    fill();
+  buffer_->make_room(kPiece, 0);
+  char* const head = buffer_->data();
+  fill(kHead);
+  const void* const nul = std::memchr(head, 0, end_);
+  if (nul == nullptr || static_cast<const char*>(nul) + 4 > head + end_) {
+    fill(kPiece);  // a header longer than any we know
   }
-  capacity_ = kPiece;
   const std::string where = path.string();
-  const GsfLayout layout = read_gsf_header({buffer_, end_}, file_bytes_, where);
+  const GsfLayout layout = read_gsf_header({head, end_}, file_bytes_, where);
   if (layout.grid.pitch_x <= Length{} || layout.grid.pitch_y <= Length{}) {
     throw InputError(where, "has no lateral scale", "Add XReal and YReal to its header");
   }
@@ -51,11 +62,14 @@ FloatRows::FloatRows(const std::filesystem::path& path) : path_(path) {
   n_left_ = layout.grid.ny;
   // What was read of the heights is moved to where they begin on a line of the cache.
   end_ -= layout.data;
-  std::memmove(buffer_, buffer_ + layout.data, end_);
+  std::memmove(head, head + layout.data, end_);
 }
 
-FloatRows::FloatRows(const std::filesystem::path& path, const RawFloats& layout)
-    : path_(path), layout_(layout), n_left_(layout.grid.ny) {
+FloatRows::FloatRows(const std::filesystem::path& path, const RawFloats& layout, PieceBuffer* lent)
+    : path_(path),
+      layout_(layout),
+      n_left_(layout.grid.ny),
+      buffer_(lent != nullptr ? lent : &own_) {
   const CameraGrid& grid = layout.grid;
   const std::string where = path.string();
   check_pixel_counts(static_cast<double>(grid.nx), static_cast<double>(grid.ny), where);
@@ -97,23 +111,10 @@ void FloatRows::open() {
   ::posix_fadvise(descriptor_.number, 0, 0, POSIX_FADV_SEQUENTIAL);
 }
 
-/// Makes the buffer larger, if it is not so large, and keeps what it holds.
-void FloatRows::make_room(std::uint64_t n_bytes) {
-  constexpr std::size_t kLine = 64;
-  if (capacity_ >= n_bytes) return;
-  auto larger = std::make_unique_for_overwrite<char[]>(n_bytes + kLine);
-  const auto over = reinterpret_cast<std::uintptr_t>(larger.get()) % kLine;
-  char* const to = larger.get() + (over == 0 ? 0 : kLine - over);
-  if (end_ > 0) std::memcpy(to, buffer_, end_);
-  space_ = std::move(larger);
-  buffer_ = to;
-  capacity_ = n_bytes;
-}
-
 /// Fills the buffer behind what it holds.
-void FloatRows::fill() {
-  while (end_ < capacity_) {
-    const ssize_t got = ::read(descriptor_.number, buffer_ + end_, capacity_ - end_);
+void FloatRows::fill(std::size_t up_to) {
+  while (end_ < up_to) {
+    const ssize_t got = ::read(descriptor_.number, buffer_->data() + end_, up_to - end_);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
       throw InputError(path_.string(), fmt::format("cannot be read: {}", std::strerror(errno)),
@@ -129,11 +130,12 @@ std::span<const char> FloatRows::next() {
   const std::uint64_t row_bytes = layout_.row_bytes();
   if (end_ - begin_ < std::min(kTogether, static_cast<std::uint64_t>(n_left_)) * row_bytes) {
     const std::size_t kept = end_ - begin_;
-    if (begin_ > 0) std::memmove(buffer_, buffer_ + begin_, kept);
+    if (begin_ > 0) std::memmove(buffer_->data(), buffer_->data() + begin_, kept);
     begin_ = 0;
     end_ = kept;
-    make_room(std::max<std::uint64_t>(kPiece, kTogether * row_bytes));
-    fill();
+    const auto piece = std::max<std::uint64_t>(kPiece, kTogether * row_bytes);
+    buffer_->make_room(piece, end_);
+    fill(piece);
     if (end_ < row_bytes) {
       throw InputError(path_.string(), "has become shorter while it was read",
                        "Wait until the file is written");
@@ -142,7 +144,7 @@ std::span<const char> FloatRows::next() {
   std::uint64_t n = (end_ - begin_) / row_bytes;
   if (n > kTogether) n = n / kTogether * kTogether;
   n = std::min(n, static_cast<std::uint64_t>(n_left_));
-  const std::span<const char> rows(buffer_ + begin_, n * row_bytes);
+  const std::span<const char> rows(buffer_->data() + begin_, n * row_bytes);
   begin_ += rows.size();
   n_left_ -= static_cast<Index>(n);
   return rows;

@@ -17,6 +17,21 @@ struct RawFloats {
   std::uint64_t row_bytes() const { return 4 * static_cast<std::uint64_t>(grid.nx); }
 };
 
+/// Where the pieces of a map lie while they are looked at. Lent from one FloatRows to the next, so
+/// that a series of maps is read into the same few lines of the cache.
+class PieceBuffer {
+ public:
+  char* data() { return data_; }
+  std::size_t capacity() const { return capacity_; }
+  /// Makes it larger, if it is not so large, and keeps its first `n_kept` bytes.
+  void make_room(std::size_t n_bytes, std::size_t n_kept);
+
+ private:
+  std::unique_ptr<char[]> space_;
+  char* data_ = nullptr;  ///< in it, aligned to a line of the cache
+  std::size_t capacity_ = 0;
+};
+
 /// The rows of a map of 32-bit floats as they lie in its file, a piece at a time, so that whoever
 /// sums over them finds them in the processor's cache, and a map of any size takes the memory of
 /// one piece.
@@ -25,12 +40,14 @@ struct RawFloats {
 class FloatRows {
  public:
   /// A Gwyddion Simple Field of heights.
+  /// @param lent  outlives the rows; without one they have their own.
   /// @throws InputError as the reader of .gsf, and if the file has no lateral scale, or its
   ///         heights are not in a unit of length.
-  explicit FloatRows(const std::filesystem::path& path);
+  explicit FloatRows(const std::filesystem::path& path, PieceBuffer* lent = nullptr);
   /// Raw floats on a grid that is known.
   /// @throws InputError if the size of the file is not that of the grid.
-  FloatRows(const std::filesystem::path& path, const RawFloats& layout);
+  FloatRows(const std::filesystem::path& path, const RawFloats& layout,
+            PieceBuffer* lent = nullptr);
 
   /// Whether the first constructor reads the file: a .gsf, on a machine of its byte order.
   static bool can_read(const std::filesystem::path& path);
@@ -40,6 +57,10 @@ class FloatRows {
   /// The next whole rows; empty after the last.
   /// @throws InputError if the file cannot be read, or has become shorter meanwhile.
   std::span<const char> next();
+
+  FloatRows(const FloatRows&) = delete;
+  FloatRows& operator=(const FloatRows&) = delete;
+  ~FloatRows() = default;
 
  private:
   /// Closes what it opened.
@@ -52,17 +73,15 @@ class FloatRows {
   };
 
   void open();
-  void make_room(std::uint64_t n_bytes);
-  void fill();
+  void fill(std::size_t up_to);
 
   std::filesystem::path path_;
   RawFloats layout_;
   Descriptor descriptor_;
   std::uint64_t file_bytes_ = 0;
   Index n_left_ = 0;  ///< rows not handed over
-  std::size_t capacity_ = 0;
-  std::unique_ptr<char[]> space_;
-  char* buffer_ = nullptr;           ///< in it, aligned to a line of the cache
+  PieceBuffer own_;
+  PieceBuffer* buffer_;
   std::size_t begin_ = 0, end_ = 0;  ///< of what is in the buffer
 };
 

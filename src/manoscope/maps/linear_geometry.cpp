@@ -67,6 +67,25 @@ LinearReducer::Geometry::Geometry(const CameraGrid& map, const ChannelFrame& fra
     normal += normal_matrix(sums[0], sums[1], sums[0] * b[iz], sums[2], sums[1] * b[iz],
                             sums[0] * b[iz] * b[iz]);
   }
+
+  // The two outer rows on either side share an interval that an edge cuts.
+  inner_begin = weights.first + 2;
+  inner_end = weights.last - 1;
+  inner_weight = grid.pitch_z.si() / width;
+  inside.assign(static_cast<std::size_t>((grid.nx + numerics::kLanes - 1) / numerics::kLanes), 0);
+  for (Index ix = first; ix < end; ++ix) {
+    constexpr std::uint64_t kEveryByte = 0x0101010101010101;
+    inside[static_cast<std::size_t>(ix / numerics::kLanes)] |= kEveryByte << ix % numerics::kLanes;
+  }
+}
+
+Index LinearReducer::Geometry::rows_alike(Index iz) const {
+  Index next = grid.nz;
+  for (const Index change :
+       {rim_below, rim_above, weights.first, inner_begin, inner_end, weights.last + 1}) {
+    if (change > iz) next = std::min(next, change);
+  }
+  return next - iz;
 }
 
 }  // namespace manoscope::maps

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/maps/channel_map.hpp"
@@ -33,7 +35,17 @@ struct LinearReducer::Geometry {
   Index left = 0, right = 0;
   Index rim_below = 0, rim_above = 0;  ///< rows [0, below) and [above, nz) are rim all along
   Eigen::Matrix3d normal;              ///< of the rim's plane, no pixel missing
+  /// Rows [inner_begin, inner_end) all have the same weight in a width average.
+  Index inner_begin = 0, inner_end = 0;
+  double inner_weight = 0.0;
+  /// A word to kLanes columns, each of its bytes with a bit to a column inside the channel.
+  std::vector<std::uint64_t> inside;
   WidthAverageOptions options;
+
+  bool is_rim_row(Index iz) const { return iz < rim_below || iz >= rim_above; }
+  bool is_inner_row(Index iz) const { return iz >= inner_begin && iz < inner_end; }
+  /// Rows from this one on of which the same pixels count, those of inner rows with one weight.
+  Index rows_alike(Index iz) const;
 
   Geometry(const CameraGrid& map, const ChannelFrame& frame, const std::string& name,
            const LinearReductionOptions& given);

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "manoscope/core/flags.hpp"
 #include "manoscope/maps/channel_map.hpp"
 #include "manoscope/maps/column_weights.hpp"
+#include "manoscope/maps/linear_gaps.hpp"
 #include "manoscope/maps/linear_geometry.hpp"
 #include "manoscope/maps/linear_kernels.hpp"
 #include "manoscope/maps/reduce.hpp"
@@ -42,6 +44,35 @@ bool LinearReducer::reduces(const ChannelFrame& frame) {
 }
 const CameraGrid& LinearReducer::grid() const { return geometry_->camera; }
 
+namespace {
+
+/// Masks what the processor says of numbers, as long as it lives: sums over missing pixels are
+/// taken before they are found.
+class QuietNumbers {
+ public:
+  QuietNumbers() { std::feholdexcept(&before_); }
+  ~QuietNumbers() { std::fesetenv(&before_); }
+  QuietNumbers(const QuietNumbers&) = delete;
+  QuietNumbers& operator=(const QuietNumbers&) = delete;
+
+ private:
+  std::fenv_t before_{};
+};
+
+/// Sums over columns of heights and their squares; see linear::Moments.
+struct RimColumns {
+  std::vector<double> height, stacked, square;
+  Index n_rows = 0;
+
+  explicit RimColumns(Index n) { clear(n); }
+  void clear(Index n) {
+    for (auto* list : {&height, &stacked, &square}) list->assign(static_cast<std::size_t>(n), 0.0);
+    n_rows = 0;
+  }
+};
+
+}  // namespace
+
 /// What has come in of one map.
 class LinearPass::Sums {
  public:
@@ -51,60 +82,53 @@ class LinearPass::Sums {
         nx_(geometry.grid.nx),
         stride_(whole_lanes(nx_)),
         columns_(static_cast<std::size_t>(stride_), 0.0),
+        edge_columns_(static_cast<std::size_t>(stride_), 0.0),
         rim_(stride_),
-        beside_(stride_),
         last_row_(static_cast<std::size_t>(4 * stride_)),
         row_before_(static_cast<std::size_t>(4 * nx_)),
-        missing_(static_cast<std::size_t>(kRows * stride_ + 1)),
-        gaps_(static_cast<std::size_t>(nx_)) {}
+        missing_(static_cast<std::size_t>(stride_ / kLanes)),
+        gaps_(geometry) {}
 
   void add_rows(std::span<const char> rows);
   LinearReduction finish(double metres_per_unit, const std::string& name);
   void reset();
 
  private:
-  /// A column's missing pixels.
-  struct Gap {
-    ColumnGaps change;
-    Index first = -1, last = -1;  ///< rows of the open gap, first = -1 where none is open
-    Index n_inside = 0;           ///< missing pixels inside the channel
-    double before = 0.0;          ///< height before the open gap
-    double added = 0.0;           ///< to the column's sum
-    bool dropped = false, touched = false;
-  };
+  /// Missing pixels of a row of the rim: how many, sum a, sum a^2.
+  using MissingOfRow = std::array<double, 3>;
 
   void take(const char* rows, Index n_rows);
-  void take_moments(const Block& block, Moments& moments);
-  void take_columns(const Block& block);
-  void open_gaps(const Block& block, Index n_missing);
-  void close(Index ix, Index upper);
-  void close_at_edge(Index ix, Index lower, Index upper);
-  double height(Index iz, Index ix) const;
+  void take_rim(Block block);
+  void add_moments(Block block, std::array<MissingOfRow, kRows>& missing);
+  void fold_rim();
+  void take_columns(Block block);
+  void fill_profile(double metres_per_unit, const std::string& name, LinearReduction& result) const;
   RimPlane fit_plane(double metres_per_unit, const std::string& name) const;
 
   const LinearReducer::Geometry& geometry_;
   numerics::Instructions instructions_;
-  Index nx_, stride_, n_taken_ = 0, n_looked_at_ = 0, n_missing_ = 0;
-  std::vector<double> columns_;
-  Moments rim_, beside_;
+  Index nx_, stride_, n_taken_ = 0;
+  std::vector<double> columns_, edge_columns_;  ///< heights; weight times height in the outer rows
+  RimColumns rim_;
+  Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
+  double squares_ = 0.0;
   Eigen::Matrix3d missing_normal_ = Eigen::Matrix3d::Zero();
   std::vector<char> last_row_, row_before_;
-  const char* block_rows_ = nullptr;  ///< of the block at work, its first row n_taken_
-  bool first_of_piece_ = true;        ///< the row before it has been handed over earlier
-  std::vector<Index> missing_;
-  std::vector<Gap> gaps_;
-  std::vector<Index> open_, touched_;
+  const char* before_ = nullptr;  ///< row before the block at work
+  std::vector<std::uint64_t> missing_;
+  bool rim_misses_ = false, columns_miss_ = false;  ///< pixels of the last block
+  MapGaps gaps_;
 };
 
 void LinearPass::Sums::reset() {
-  n_taken_ = n_looked_at_ = n_missing_ = 0;
+  n_taken_ = 0;
   std::fill(columns_.begin(), columns_.end(), 0.0);
-  rim_.reset(stride_);
-  beside_.reset(stride_);
+  std::fill(edge_columns_.begin(), edge_columns_.end(), 0.0);
+  rim_.clear(stride_);
+  right_.setZero();
+  squares_ = 0.0;
   missing_normal_.setZero();
-  for (const Index ix : touched_) gaps_[static_cast<std::size_t>(ix)] = {};
-  touched_.clear();
-  open_.clear();
+  gaps_.reset();
 }
 
 void LinearPass::Sums::add_rows(std::span<const char> rows) {
@@ -113,6 +137,7 @@ void LinearPass::Sums::add_rows(std::span<const char> rows) {
   auto n_rows = static_cast<Index>(rows.size() / row_bytes);
   MANO_ASSERT(n_taken_ + n_rows <= geometry_.grid.nz);
   if (n_rows == 0) return;
+  const QuietNumbers quiet;
   const char* at = rows.data();
   // The last row may be followed by nothing: whole lanes are read from a copy.
   const bool copies = stride_ != nx_;
@@ -121,181 +146,116 @@ void LinearPass::Sums::add_rows(std::span<const char> rows) {
     std::memcpy(last_row_.data(), last, row_bytes);
     --n_rows;
   }
-  const auto& weights = geometry_.weights;
-  const auto kind = [&](Index iz) {
-    return std::array{iz < geometry_.rim_below || iz >= geometry_.rim_above,
-                      iz >= weights.first && iz <= weights.last};
-  };
+  before_ = row_before_.data();
   while (n_rows > 0) {
-    Index n = 1;
-    while (n < std::min(kRows, n_rows) && kind(n_taken_ + n) == kind(n_taken_)) ++n;
-    if (n < kRows) n = n < kFewRows ? 1 : kFewRows;
+    const Index n = std::min({n_rows, geometry_.rows_alike(n_taken_), kRows});
     take(at, n);
-    first_of_piece_ = false;
     at += static_cast<std::size_t>(n) * row_bytes;
+    before_ = at - row_bytes;
     n_rows -= n;
   }
-  if (copies) {
-    // Its row before is that of `rows`, not what precedes the copy.
-    if (!first_of_piece_) std::memcpy(row_before_.data(), last - row_bytes, row_bytes);
-    first_of_piece_ = true;
-    take(last_row_.data(), 1);
-  }
+  if (copies) take(last_row_.data(), 1);
   std::memcpy(row_before_.data(), last, row_bytes);
-  first_of_piece_ = true;
 }
 
 void LinearPass::Sums::take(const char* rows, Index n_rows) {
   const auto& g = geometry_;
-  block_rows_ = rows;
-  Index n_missing = 0;
-  Block block{rows, n_rows, 4 * nx_, 0, stride_, stride_, missing_.data(), &n_missing};
-  if (n_taken_ < g.rim_below || n_taken_ >= g.rim_above) {
-    take_moments(block, rim_);
-  } else {
-    const Index end = whole_lanes(g.left), begin = g.right / kLanes * kLanes;
-    if (end > begin) {
-      take_moments(block, beside_);
-    } else {
-      block.end = end;
-      if (g.left > 0) take_moments(block, beside_);
-      block.first = begin;
-      block.end = stride_;
-      if (g.right < nx_) take_moments(block, beside_);
-    }
-  }
-  if (n_taken_ >= g.weights.first && n_taken_ <= g.weights.last) {
-    block.first = g.first / kLanes * kLanes;
-    block.end = whole_lanes(g.end);
-    take_columns(block);
-  }
+  const Block block{rows, n_rows, 4 * nx_, 0, stride_, missing_.data(), false};
+  if (n_taken_ == g.rim_below || n_taken_ == g.rim_above) fold_rim();
+  take_rim(block);
+  if (n_taken_ >= g.weights.first && n_taken_ <= g.weights.last) take_columns(block);
   n_taken_ += n_rows;
 }
 
-void LinearPass::Sums::take_moments(const Block& block, Moments& moments) {
-  *block.n_missing = 0;
-  run_rows<MomentColumns>(instructions_, block, geometry_.b.data() + n_taken_,
-                          moments.height.data(), moments.b_height.data(), moments.square.data());
-  const bool all = &moments == &rim_;
-  for (Index k = 0; k < *block.n_missing; ++k) {
-    const Index at = block.missing[k], ix = at % stride_;
-    const bool on_rim = all ? ix < nx_ : ix < geometry_.left || (ix >= geometry_.right && ix < nx_);
-    if (!on_rim) continue;
-    const double a = geometry_.a[ix], b = geometry_.b[n_taken_ + at / stride_];
-    missing_normal_ += normal_matrix(1.0, a, b, a * a, a * b, b * b);
-  }
-}
-
-void LinearPass::Sums::take_columns(const Block& block) {
-  *block.n_missing = 0;
-  run_rows<WeightedColumns>(
-      instructions_, block,
-      &geometry_.weights.weight[static_cast<std::size_t>(n_taken_ - geometry_.weights.first)],
-      columns_.data());
-  n_looked_at_ += block.n_rows * (geometry_.end - geometry_.first);
-  if (*block.n_missing > 0) open_gaps(block, *block.n_missing);
-  const Index end = n_taken_ + block.n_rows;
-  for (std::size_t k = 0; k < open_.size();) {
-    const Gap& gap = gaps_[static_cast<std::size_t>(open_[k])];
-    if (gap.first >= 0 && gap.last + 1 < end) close(open_[k], gap.last + 1);
-    if (gap.first >= 0) {
-      ++k;
-    } else {
-      open_[k] = open_.back();
-      open_.pop_back();
-    }
-  }
-}
-
-/// Height of a pixel of the block at work or of the row before it.
-double LinearPass::Sums::height(Index iz, Index ix) const {
-  const char* const row = iz < n_taken_ && first_of_piece_
-                              ? row_before_.data()
-                              : block_rows_ + (iz - n_taken_) * 4 * nx_;
-  float value = 0.0F;
-  std::memcpy(&value, row + 4 * ix, sizeof value);
-  return value;
-}
-
-void LinearPass::Sums::open_gaps(const Block& block, Index n_missing) {
-  const auto& weights = geometry_.weights;
-  for (Index k = 0; k < n_missing; ++k) {
-    const Index at = block.missing[k], ix = at % stride_, iz = n_taken_ + at / stride_;
-    if (ix < geometry_.first || ix >= geometry_.end) continue;
-    ++n_missing_;
-    Gap& gap = gaps_[static_cast<std::size_t>(ix)];
-    if (!gap.touched) touched_.push_back(ix);
-    gap.touched = true;
-    const bool listed = gap.first >= 0;
-    if (iz > weights.first && iz < weights.last) ++gap.n_inside;
-    if (gap.first >= 0 && gap.last + 1 < iz) close(ix, gap.last + 1);
-    if (gap.first < 0) {
-      gap.first = iz;
-      gap.before = iz > weights.first ? height(iz - 1, ix) : 0.0;
-      if (!listed) open_.push_back(ix);
-    }
-    gap.last = iz;
-  }
-}
-
-/// Closes the open gap of a column at the good pixel of row `upper`, or beyond the last row.
-void LinearPass::Sums::close(Index ix, Index upper) {
+void LinearPass::Sums::take_rim(Block block) {
   const auto& g = geometry_;
-  Gap& gap = gaps_[static_cast<std::size_t>(ix)];
-  const Index lower = gap.first - 1;
-  gap.first = -1;
-  if (lower <= g.weights.first || upper >= g.weights.last) return close_at_edge(ix, lower, upper);
-  const double largest = std::max(g.options.largest_gap * g.width, 2.5 * g.grid.pitch_z.si());
-  if (g.grid.z(upper) - g.grid.z(lower) > largest) {
-    gap.dropped = true;
-    return;
+  std::array<MissingOfRow, kRows> missing{};
+  const Index left_end = whole_lanes(g.left), right_begin = g.right / kLanes * kLanes;
+  block.expects_missing = rim_misses_;
+  rim_misses_ = false;
+  if (g.is_rim_row(n_taken_) || left_end > right_begin) {
+    add_moments(block, missing);
+  } else {
+    block.end = left_end;
+    if (g.left > 0) add_moments(block, missing);
+    block.first = right_begin;
+    block.end = stride_;
+    if (g.right < nx_) add_moments(block, missing);
   }
-  const double by = gap.change.close(g.weights, g.grid, lower, upper, g.width);
-  gap.added += by * (gap.before + height(upper, ix));
+  rim_.n_rows += block.n_rows;
+  for (Index r = 0; rim_misses_ && r < block.n_rows; ++r) {
+    const auto [n, a, aa] = missing[static_cast<std::size_t>(r)];
+    const double b = g.b[n_taken_ + r];
+    if (n > 0.0) missing_normal_ += normal_matrix(n, a, n * b, aa, a * b, n * b * b);
+  }
 }
 
-/// The same where the gap reaches an edge: the clamped edge itself, zeta = 0, takes the place of
-/// the pixel beyond it.
-void LinearPass::Sums::close_at_edge(Index ix, Index lower, Index upper) {
+void LinearPass::Sums::add_moments(Block block, std::array<MissingOfRow, kRows>& missing) {
   const auto& g = geometry_;
-  const ColumnWeights& weights = g.weights;
-  Gap& gap = gaps_[static_cast<std::size_t>(ix)];
-  const bool below = lower <= weights.first;
-  if (below && upper >= weights.last) {
-    gap.dropped = true;
-    return;
+  const Moments moments{rim_.height.data(), rim_.stacked.data(), rim_.square.data()};
+  const Index n_found = linear::add_rows(instructions_, block, moments);
+  if (n_found == 0) return;
+  rim_misses_ = true;
+  const bool all = g.is_rim_row(n_taken_);
+  for (Index group = block.first / kLanes; group < block.end / kLanes; ++group) {
+    for_each_bit(missing_[static_cast<std::size_t>(group)], group, [&](Index r, Index ix) {
+      if (ix >= nx_ || (!all && ix >= g.left && ix < g.right)) return;
+      MissingOfRow& row = missing[static_cast<std::size_t>(r)];
+      const double a = g.a[ix];
+      row[0] += 1.0;
+      row[1] += a;
+      row[2] += a * a;
+    });
   }
-  // The good pixel that is left, the rows that lose their weight, and what the one beyond the edge
-  // had given if it is good.
-  const Index node = below ? upper : lower;
-  const Index from = below ? weights.first : lower + 1, to = below ? upper - 1 : weights.last;
-  if (below && lower == weights.first) gap.added -= weights.of(lower) * gap.before;
-  if (!below && upper == weights.last) gap.added -= weights.of(upper) * height(upper, ix);
-  for (Index iz = from; iz <= to; ++iz) gap.change.remove(weights, g.grid, iz);
-  const double pitch = g.grid.pitch_z.si();
-  const double to_edge = 0.5 * g.width - (below ? -1.0 : 1.0) * g.grid.z(node);
-  if (to_edge > std::max(g.options.largest_gap * g.width, 2.5 * pitch)) gap.dropped = true;
-  const double by = 0.5 * (to_edge + pitch) / g.width - weights.of(node);
-  gap.change.grow(weights, g.grid, node, by);
-  gap.added += by * (below ? height(node, ix) : gap.before);
-  if (to_edge >= 1.5 * pitch) gap.change.sixth += std::pow(to_edge, 6);
+}
+
+/// Adds the columns to the right side of the plane's equations. All rows that are in them have the
+/// same columns on the rim.
+void LinearPass::Sums::fold_rim() {
+  if (rim_.n_rows == 0) return;
+  const auto& g = geometry_;
+  using List = Eigen::Map<const Array1>;
+  // Of row r of n the stacked heights hold n - r times what it holds.
+  const double b_after = g.grid.z(n_taken_) / g.scale_z, step = g.grid.pitch_z.si() / g.scale_z;
+  const auto add = [&](Index first, Index n) {
+    const List height(rim_.height.data() + first, n);
+    const double sum = height.sum();
+    const double stacked = List(rim_.stacked.data() + first, n).sum();
+    right_ += Eigen::Vector3d(sum, (height * g.a.segment(first, n)).sum(),
+                              b_after * sum - step * stacked);
+    squares_ += List(rim_.square.data() + first, n).sum();
+  };
+  if (g.is_rim_row(n_taken_ - 1)) {
+    add(0, nx_);
+  } else {
+    add(0, g.left);
+    add(g.right, nx_ - g.right);
+  }
+  rim_.clear(stride_);
+}
+
+void LinearPass::Sums::take_columns(Block block) {
+  const auto& g = geometry_;
+  block.first = g.first / kLanes * kLanes;
+  block.end = whole_lanes(g.end);
+  block.expects_missing = columns_miss_;
+  Index n_found = 0;
+  if (g.is_inner_row(n_taken_)) {
+    n_found = linear::add_rows(instructions_, block, Heights{columns_.data()});
+  } else {
+    const double* const weight =
+        &g.weights.weight[static_cast<std::size_t>(n_taken_ - g.weights.first)];
+    n_found = linear::add_rows(instructions_, block, WeightedHeights{edge_columns_.data(), weight});
+  }
+  columns_miss_ = n_found > 0;
+  if (n_found > 0 || gaps_.any_open()) {
+    gaps_.follow(block, {block.rows, before_, n_taken_, block.row_bytes});
+  }
 }
 
 RimPlane LinearPass::Sums::fit_plane(double metres_per_unit, const std::string& name) const {
   constexpr double kFewest = 100.0;  // a plane to a tenth of the pixel noise
   const auto& g = geometry_;
-  using List = Eigen::Map<const Array1>;
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  double squares = 0.0;
-  const auto add = [&](const Moments& moments, Index first, Index n) {
-    const List height(moments.height.data() + first, n);
-    right += Eigen::Vector3d(height.sum(), (height * g.a.segment(first, n)).sum(),
-                             List(moments.b_height.data() + first, n).sum());
-    squares += List(moments.square.data() + first, n).sum();
-  };
-  add(rim_, 0, nx_);
-  add(beside_, 0, g.left);
-  add(beside_, g.right, nx_ - g.right);
   const Eigen::Matrix3d normal = g.normal - missing_normal_;
   const double n = std::round(normal(0, 0));
   const auto factors = normal.ldlt();
@@ -309,8 +269,8 @@ RimPlane LinearPass::Sums::fit_plane(double metres_per_unit, const std::string& 
                      "with some of its rigid frame on two sides or more");
   }
   const double to_outward = g.outward * metres_per_unit;
-  const Eigen::Vector3d c = factors.solve(right);
-  const double variance = std::max(0.0, squares - c.dot(right)) / (n - 3.0);
+  const Eigen::Vector3d c = factors.solve(right_);
+  const double variance = std::max(0.0, squares_ - c.dot(right_)) / (n - 3.0);
   const Eigen::Vector3d unscale(1.0, 1.0 / g.scale_x, g.across / g.scale_z);
   RimPlane plane;
   plane.offset = to_outward * c[0];
@@ -326,57 +286,71 @@ RimPlane LinearPass::Sums::fit_plane(double metres_per_unit, const std::string& 
 }
 
 LinearReduction LinearPass::Sums::finish(double metres_per_unit, const std::string& name) {
-  const auto& g = geometry_;
-  MANO_ASSERT(n_taken_ == g.grid.nz);
-  for (const Index ix : open_) close(ix, g.weights.last + 1);
+  MANO_ASSERT(n_taken_ == geometry_.grid.nz);
+  gaps_.close_all();
+  fold_rim();
   LinearReduction result;
   result.plane = fit_plane(metres_per_unit, name);
-  result.missing = static_cast<double>(n_missing_) / static_cast<double>(n_looked_at_);
+  fill_profile(metres_per_unit, name, result);
+  reset();
+  return result;
+}
+
+/// Stations run along the flow: where it runs against the columns they are turned round.
+void LinearPass::Sums::fill_profile(double metres_per_unit, const std::string& name,
+                                    LinearReduction& result) const {
+  using List = Eigen::Map<const Array1>;
+  const auto& g = geometry_;
   const RimPlane& plane = result.plane;
   const Index n = g.end - g.first;
   const double pitch = g.grid.pitch_z.si(), noise = plane.sigma.si();
   const auto n_rows = static_cast<double>(g.weights.last - g.weights.first - 1);
+  const bool turns = g.flow < 0.0;
+  const auto station = [&](Index ix) { return turns ? g.end - 1 - ix : ix - g.first; };
 
   Profile& profile = result.profile;
-  profile.x.resize(n);
-  profile.zeta.resize(n);
+  profile.x = g.x.segment(g.first, n);
+  profile.zeta =
+      g.inner_weight * List(columns_.data() + g.first, n) + List(edge_columns_.data() + g.first, n);
+  if (turns) {
+    profile.x.reverseInPlace();
+    profile.zeta.reverseInPlace();
+  }
   profile.flags = Flags1::Zero(n);
   profile.uncertainty.independent = Array1::Constant(n, noise * std::sqrt(g.weights.squares));
   Array1 measured = Array1::Constant(n, g.weights.sum);
   Array1 mean_z = Array1::Constant(n, g.across * g.weights.mean_z);
-  const auto station = [&](Index ix) { return g.flow > 0.0 ? ix - g.first : g.end - 1 - ix; };
-  for (Index ix = g.first; ix < g.end; ++ix) {
-    profile.x[station(ix)] = g.x[ix];
-    profile.zeta[station(ix)] = columns_[static_cast<std::size_t>(ix)];
-  }
-  for (const Index ix : touched_) {
-    const Gap& gap = gaps_[static_cast<std::size_t>(ix)];
+  const double looked_at = (n_rows + 2.0) * static_cast<double>(n);
+  result.missing = static_cast<double>(gaps_.missing()) / looked_at;
+  const double to_outward = g.outward * metres_per_unit, balance = mean_z[0];
+  profile.zeta = to_outward * profile.zeta -
+                 (plane.offset + plane.tilt_x * (profile.x - plane.x_centre)) * g.weights.sum -
+                 plane.tilt_z * balance;
+  const double inverse_cube = 1.0 / (g.width * g.width * g.width);
+  for (Index ix = g.first; gaps_.missing() > 0 && ix < g.end; ++ix) {
+    if (!gaps_.in_column(ix)) continue;
+    const MapGaps::Change change = gaps_.in(ix);
     const Index i = station(ix);
-    profile.zeta[i] += gap.added;
-    measured[i] += gap.change.measured;
-    mean_z[i] += g.across * gap.change.mean_z;
-  }
-  profile.zeta = g.outward * metres_per_unit * profile.zeta -
-                 (plane.offset + plane.tilt_x * (profile.x - plane.x_centre)) * measured -
-                 plane.tilt_z * mean_z;
-  for (const Index ix : touched_) {
-    const Gap& gap = gaps_[static_cast<std::size_t>(ix)];
-    const Index i = station(ix);
-    const double inside = (n_rows - static_cast<double>(gap.n_inside)) * pitch / g.width;
-    if (gap.dropped || inside < g.options.smallest_coverage) {
+    const double inside = (n_rows - static_cast<double>(change.n_inside)) * pitch / g.width;
+    if (change.dropped || inside < g.options.smallest_coverage) {
       profile.flags[i] = StationFlag::no_data;
       profile.zeta[i] = profile.uncertainty.independent[i] = measured[i] = mean_z[i] = 0.0;
       continue;
     }
+    measured[i] += change.weights.measured;
+    mean_z[i] += g.across * change.weights.mean_z;
+    const double level = plane.offset + plane.tilt_x * (profile.x[i] - plane.x_centre);
+    profile.zeta[i] += to_outward * change.height - level * change.weights.measured -
+                       plane.tilt_z * g.across * change.weights.mean_z;
     // A parabola of this mean sags by curvature gap^3 / 12 below the chord of a gap.
-    const double sag = profile.zeta[i] / (g.width * g.width * g.width);
-    profile.uncertainty.independent[i] = std::sqrt(
-        (g.weights.squares + gap.change.squares) * noise * noise + sag * sag * gap.change.sixth);
+    const double sag = profile.zeta[i] * inverse_cube;
+    profile.uncertainty.independent[i] =
+        std::sqrt((g.weights.squares + change.weights.squares) * noise * noise +
+                  sag * sag * change.weights.sixth);
   }
+  profile.uncertainty.modes.reserve(4);  // three of the plane, one of the quadrature
   add_shared_modes(profile, plane, measured, mean_z, g.grid.pitch_z / Length::from_si(g.width),
                    name);
-  reset();
-  return result;
 }
 
 LinearPass::LinearPass(const LinearReducer& reducer, numerics::Instructions instructions)

@@ -4,14 +4,15 @@
 #include <cstring>
 
 #if defined(__x86_64__) && !defined(__clang__)
-#include <immintrin.h>  // declares the builtin used below
+#include <immintrin.h>  // declares the builtins used below
 #endif
 
 /// Eight doubles side by side, for the few loops that run over every pixel of a map.
 ///
 /// A kernel written over `Lanes` does the same operations on the same eight lanes in the same order
 /// on every processor, two, four or eight of them in one instruction: its result has the same bytes
-/// everywhere (no fused multiply-add: -ffp-contract=off). A kernel is a struct with
+/// everywhere (no fused multiply-add but of exact products: -ffp-contract=off). A kernel is a
+/// struct with
 ///
 ///   template <class Lanes>
 ///   [[gnu::always_inline]] static void run(arguments...);
@@ -31,7 +32,7 @@ inline Instructions best_instructions() {
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl")) {
     return Instructions::avx512;
   }
-  if (__builtin_cpu_supports("avx2")) return Instructions::avx2;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Instructions::avx2;
 #endif
   return Instructions::baseline;
 }
@@ -45,6 +46,28 @@ struct TwoWide {
   [[gnu::always_inline]] static Values widened(const Floats& values) {
     return __builtin_convertvector(values, Values);
   }
+  [[gnu::always_inline]] static Values plus_square(const Values& sum, const Values& x) {
+    return sum + x * x;
+  }
+  /// One bit a lane, set where `lanes` is -1; elsewhere it is 0.
+  [[gnu::always_inline]] static unsigned bits_of(const FloatBits& lanes) {
+    std::uint64_t both;
+    std::memcpy(&both, &lanes, sizeof both);
+    return static_cast<unsigned>((both & 1) | (both >> 62 & 2));
+  }
+  [[gnu::always_inline]] static unsigned bits_of(const Bits& lanes) {
+    return static_cast<unsigned>((lanes[0] & 1) | (lanes[1] & 2));
+  }
+  /// Widened; what is not finite becomes 0 and has its bit set in `missing`.
+  [[gnu::always_inline]] static Values finite(const FloatBits& bits, unsigned& missing) {
+    const FloatBits good = (bits & 0x7f800000) < 0x7f800000;
+    missing = bits_of(good) ^ ((1U << size) - 1U);
+    return widened(reinterpret_cast<Floats>(bits & good));
+  }
+  [[gnu::always_inline]] static bool all_finite(const Values& v) {
+    constexpr std::int64_t kExponent = 0x7ff0000000000000;
+    return bits_of((reinterpret_cast<const Bits&>(v) & kExponent) == kExponent) == 0;
+  }
 };
 struct FourWide {
   static constexpr int size = 4;
@@ -53,7 +76,41 @@ struct FourWide {
   using Floats = float __attribute__((vector_size(16)));
   using FloatBits = std::int32_t __attribute__((vector_size(16)));
   [[gnu::always_inline]] static Values widened(const Floats& values) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    return __builtin_ia32_cvtps2pd256(values);  // g++ 12 makes two halves of the one below
+#else
     return __builtin_convertvector(values, Values);
+#endif
+  }
+  [[gnu::always_inline]] static Values plus_square(const Values& sum, const Values& x) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    return __builtin_ia32_vfmaddpd256(x, x, sum);
+#else
+    return sum + x * x;
+#endif
+  }
+  [[gnu::always_inline]] static unsigned bits_of(const FloatBits& lanes) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    return static_cast<unsigned>(__builtin_ia32_movmskps(reinterpret_cast<Floats>(lanes)));
+#else
+    return static_cast<unsigned>((lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) | (lanes[3] & 8));
+#endif
+  }
+  [[gnu::always_inline]] static unsigned bits_of(const Bits& lanes) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    return static_cast<unsigned>(__builtin_ia32_movmskpd256(reinterpret_cast<Values>(lanes)));
+#else
+    return static_cast<unsigned>((lanes[0] & 1) | (lanes[1] & 2) | (lanes[2] & 4) | (lanes[3] & 8));
+#endif
+  }
+  [[gnu::always_inline]] static Values finite(const FloatBits& bits, unsigned& missing) {
+    const FloatBits good = (bits & 0x7f800000) < 0x7f800000;
+    missing = bits_of(good) ^ ((1U << size) - 1U);
+    return widened(reinterpret_cast<Floats>(bits & good));
+  }
+  [[gnu::always_inline]] static bool all_finite(const Values& v) {
+    constexpr std::int64_t kExponent = 0x7ff0000000000000;
+    return bits_of((reinterpret_cast<const Bits&>(v) & kExponent) == kExponent) == 0;
   }
 };
 struct EightWide {
@@ -69,6 +126,43 @@ struct EightWide {
     return __builtin_ia32_cvtps2pd512_mask(values, Values{}, -1, kCurrentRounding);
 #else
     return __builtin_convertvector(values, Values);
+#endif
+  }
+  [[gnu::always_inline]] static Values plus_square(const Values& sum, const Values& x) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    constexpr int kCurrentRounding = 4;
+    return __builtin_ia32_vfmaddpd512_mask(x, x, sum, -1, kCurrentRounding);
+#else
+    return sum + x * x;
+#endif
+  }
+  template <class Any>
+  [[gnu::always_inline]] static unsigned bits_of(const Any& lanes) {
+    unsigned bits = 0;
+    for (int i = 0; i < size; ++i) bits |= static_cast<unsigned>(lanes[i] & 1) << i;
+    return bits;
+  }
+  [[gnu::always_inline]] static Values finite(const FloatBits& bits, unsigned& missing) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    constexpr int kNanOrInfinite = 0x99, kCurrentRounding = 4;
+    const auto floats = reinterpret_cast<Floats>(bits);
+    const auto bad = __builtin_ia32_fpclassps256_mask(floats, kNanOrInfinite, -1);
+    missing = static_cast<std::uint8_t>(bad);
+    return __builtin_ia32_cvtps2pd512_mask(floats, Values{}, static_cast<char>(~bad),
+                                           kCurrentRounding);
+#else
+    const FloatBits good = (bits & 0x7f800000) < 0x7f800000;
+    missing = bits_of(good) ^ ((1U << size) - 1U);
+    return widened(reinterpret_cast<Floats>(bits & good));
+#endif
+  }
+  [[gnu::always_inline]] static bool all_finite(const Values& v) {
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+    constexpr int kNanOrInfinite = 0x99;
+    return __builtin_ia32_fpclasspd512_mask(v, kNanOrInfinite, -1) == 0;
+#else
+    constexpr std::int64_t kExponent = 0x7ff0000000000000;
+    return bits_of((reinterpret_cast<const Bits&>(v) & kExponent) == kExponent) == 0;
 #endif
   }
 };
@@ -96,28 +190,17 @@ struct Register {
     std::memcpy(&values, from, sizeof values);
     return {Width::widened(values)};
   }
-  /// The same; what is not finite becomes 0.
-  [[gnu::always_inline]] static Register finite_floats(const char* from) {
+  /// The same; what is not finite becomes 0, and its bit in `missing` is set, else cleared.
+  [[gnu::always_inline]] static Register finite_floats(const char* from, unsigned& missing) {
     FloatBits bits;
     std::memcpy(&bits, from, sizeof bits);
-    const FloatBits exponent = bits & 0x7f800000;
-    const FloatBits finite = bits & ~(exponent == 0x7f800000);
-    return {Width::widened(reinterpret_cast<Floats>(finite))};
+    return {Width::finite(bits, missing)};
   }
-  /// Raises `largest` to the sizes of the floats, as bit patterns, which rise with the size.
-  [[gnu::always_inline]] static void raise(FloatBits& largest, const char* from) {
-    FloatBits bits;
-    std::memcpy(&bits, from, sizeof bits);
-    bits &= 0x7fffffff;
-    largest = bits > largest ? bits : largest;
-  }
-  /// Whether a float of such a size is infinite or NaN.
-  [[gnu::always_inline]] static bool any_not_finite(const FloatBits& largest) {
-    const FloatBits bad = largest >= 0x7f800000;
-    std::uint64_t words[sizeof bad / 8], any = 0;
-    std::memcpy(words, &bad, sizeof bad);
-    for (const std::uint64_t word : words) any |= word;
-    return any != 0;
+  [[gnu::always_inline]] bool all_finite() const { return Width::all_finite(v); }
+  /// sum + x x, where x is a 32-bit float: its square is exact, so that it does not matter whether
+  /// the processor rounds between product and sum.
+  [[gnu::always_inline]] static Register plus_square(Register sum, Register x) {
+    return {Width::plus_square(sum.v, x.v)};
   }
   [[gnu::always_inline]] void store(double* to) const { std::memcpy(to, &v, sizeof v); }
 
@@ -149,9 +232,6 @@ struct Twice {
 
   Half low, high;
 
-  struct FloatBits {
-    typename Half::FloatBits low{}, high{};
-  };
   [[gnu::always_inline]] static Twice load(const double* from) {
     return {Half::load(from), Half::load(from + Half::size)};
   }
@@ -161,17 +241,18 @@ struct Twice {
   [[gnu::always_inline]] static Twice floats(const char* from) {
     return {Half::floats(from), Half::floats(from + 4 * Half::size)};
   }
-  [[gnu::always_inline]] static Twice finite_floats(const char* from) {
-    return {Half::finite_floats(from), Half::finite_floats(from + 4 * Half::size)};
+  [[gnu::always_inline]] static Twice finite_floats(const char* from, unsigned& missing) {
+    unsigned above = 0;
+    const Half first = Half::finite_floats(from, missing);
+    const Half second = Half::finite_floats(from + 4 * Half::size, above);
+    missing |= above << Half::size;
+    return {first, second};
   }
-  [[gnu::always_inline]] static void raise(FloatBits& largest, const char* from) {
-    Half::raise(largest.low, from);
-    Half::raise(largest.high, from + 4 * Half::size);
+  [[gnu::always_inline]] bool all_finite() const {
+    return static_cast<int>(low.all_finite()) + static_cast<int>(high.all_finite()) == 2;
   }
-  [[gnu::always_inline]] static bool any_not_finite(const FloatBits& largest) {
-    return static_cast<int>(Half::any_not_finite(largest.low)) +
-               static_cast<int>(Half::any_not_finite(largest.high)) !=
-           0;
+  [[gnu::always_inline]] static Twice plus_square(Twice sum, Twice x) {
+    return {Half::plus_square(sum.low, x.low), Half::plus_square(sum.high, x.high)};
   }
   [[gnu::always_inline]] void store(double* to) const {
     low.store(to);
@@ -205,7 +286,7 @@ using BaselineLanes = Twice<Twice<Register<TwoWide>>>;
 
 #if defined(__x86_64__)
 template <class Kernel, class... Arguments>
-[[gnu::target("avx2")]] void run_avx2(Arguments... arguments) {
+[[gnu::target("avx2,fma")]] void run_avx2(Arguments... arguments) {
   Kernel::template run<Twice<Register<FourWide>>>(arguments...);
 }
 template <class Kernel, class... Arguments>

@@ -6,8 +6,8 @@
 #include <atomic>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
-#include <thread>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/parallel.hpp"
@@ -43,6 +43,37 @@ TurnedMap turned(const Path& path, const ChannelFrame& frame) {
   return result;
 }
 
+/// What one map at a time is reduced in.
+struct WorkRoom {
+  maps::LinearPass pass;
+  io::PieceBuffer buffer;
+
+  explicit WorkRoom(const maps::LinearReducer& reducer) : pass(reducer) {}
+};
+
+/// As many as there are threads at work. One that a fault has left unfinished is not given back.
+class WorkRooms {
+ public:
+  explicit WorkRooms(const maps::LinearReducer& reducer) : reducer_(reducer) {}
+
+  std::unique_ptr<WorkRoom> take() {
+    const std::lock_guard lock(mutex_);
+    if (free_.empty()) return std::make_unique<WorkRoom>(reducer_);
+    auto room = std::move(free_.back());
+    free_.pop_back();
+    return room;
+  }
+  void give_back(std::unique_ptr<WorkRoom> room) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(room));
+  }
+
+ private:
+  const maps::LinearReducer& reducer_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<WorkRoom>> free_;
+};
+
 void require_grid(const CameraGrid& first, const CameraGrid& grid, const Path& path) {
   if (grid == first) return;
   throw InputError(path.string(),
@@ -61,9 +92,9 @@ std::vector<maps::LinearReduction> quick_profiles(const std::vector<Path>& files
                                                   int n_threads, const Monitor& monitor) {
   std::vector<maps::LinearReduction> results(files.size());
   if (files.empty()) return results;
-  const auto open = [&](const Path& path) {
-    return options.raw ? std::make_unique<io::FloatRows>(path, *options.raw)
-                       : std::make_unique<io::FloatRows>(path);
+  const auto open = [&](const Path& path, io::PieceBuffer* lent = nullptr) {
+    return options.raw ? std::make_unique<io::FloatRows>(path, *options.raw, lent)
+                       : std::make_unique<io::FloatRows>(path, lent);
   };
   const auto streams = [&](const Path& path) {
     return options.raw || (maps::LinearReducer::reduces(frame) && io::FloatRows::can_read(path));
@@ -77,7 +108,7 @@ std::vector<maps::LinearReduction> quick_profiles(const std::vector<Path>& files
     const TurnedMap first = turned(files.front(), frame);
     reducer.emplace(first.grid, first.frame, first_name, options.reduction);
   }
-  const auto reduce = [&](maps::LinearPass& pass, const Path& path) {
+  const auto reduce = [&](maps::LinearPass& pass, io::PieceBuffer& buffer, const Path& path) {
     if (!all_stream) {
       const TurnedMap map = turned(path, frame);
       require_grid(reducer->grid(), map.grid, path);
@@ -85,23 +116,21 @@ std::vector<maps::LinearReduction> quick_profiles(const std::vector<Path>& files
       pass.add_rows({reinterpret_cast<const char*>(map.rows.data()), n_bytes});
       return pass.finish(1.0, path.string());
     }
-    const auto map = open(path);
+    const auto map = open(path, &buffer);
     require_grid(reducer->grid(), map->grid(), path);
     for (auto rows = map->next(); !rows.empty(); rows = map->next()) pass.add_rows(rows);
     return pass.finish(map->metres_per_unit(), path.string());
   };
   const auto n_files = static_cast<Index>(files.size());
-  const Index n_workers = std::min<Index>(
-      n_files, n_threads > 0 ? n_threads : std::max<Index>(1, std::thread::hardware_concurrency()));
   std::atomic<Index> done{0};
-  parallel_for(n_workers, n_threads, [&](Index worker) {
-    maps::LinearPass pass(*reducer);
-    for (Index i = worker; i < n_files; i += n_workers) {
-      monitor.checkpoint();
-      const auto at = static_cast<std::size_t>(i);
-      results[at] = reduce(pass, files[at]);
-      monitor.report("reducing maps", static_cast<double>(++done) / static_cast<double>(n_files));
-    }
+  WorkRooms rooms(*reducer);
+  parallel_for(n_files, n_threads, [&](Index i) {
+    monitor.checkpoint();
+    const auto at = static_cast<std::size_t>(i);
+    auto room = rooms.take();
+    results[at] = reduce(room->pass, room->buffer, files[at]);
+    rooms.give_back(std::move(room));
+    monitor.report("reducing maps", static_cast<double>(++done) / static_cast<double>(n_files));
   });
   return results;
 }

@@ -39,7 +39,7 @@ class QuickProfiles : public ::testing::Test {
       MapErrors errors;
       errors.noise = 20e-9;
       errors.tilt_columns = 1e-4;
-      errors.dropouts = 0.01;
+      errors.dropouts = share_missing;
       const Bulge wall{15.5e-3, 1.7e-3, 2e-6 * (i + 1), 0.54e-3, 0.6};
       const HeightMap map = test_support::synthetic_map(grid, frame, wall, errors, stream);
       files.push_back(folder / ("map" + std::to_string(i) + extension));
@@ -62,6 +62,7 @@ class QuickProfiles : public ::testing::Test {
   }
 
   std::filesystem::path folder;
+  double share_missing = 0.01;
   CameraGrid grid{512, 96, 16.3 * mm / 512.0, 2.5 * mm / 96.0};
 };
 
@@ -81,10 +82,30 @@ void expect_same_bytes(const std::vector<maps::LinearReduction>& a,
 
 TEST_F(QuickProfiles, HaveTheSameBytesOnAnyNumberOfThreads) {
   const ChannelFrame frame = along(FlowDirection::plus_columns);
+  for (const double dropouts : {0.0, 0.01}) {
+    share_missing = dropouts;
+    const auto gsf = write(".gsf", frame), raw = write(".f32", frame);
+    QuickProfilesOptions as_floats;
+    as_floats.raw = io::RawFloats{io::read_height_map(gsf.front()).grid(), 1.0};
+    const auto one = quick_profiles(gsf, frame, {}, 1);
+    for (const int n_threads : {1, 2, 0}) {
+      expect_same_bytes(one, quick_profiles(gsf, frame, {}, n_threads));
+      expect_same_bytes(one, quick_profiles(raw, frame, as_floats, n_threads));
+    }
+  }
+}
+
+TEST_F(QuickProfiles, NameTheFirstMapAtFaultOnAnyNumberOfThreads) {
+  const ChannelFrame frame = along(FlowDirection::plus_columns);
   const auto files = write(".gsf", frame);
-  const auto one = quick_profiles(files, frame, {}, 1);
-  for (const int n_threads : {2, 0}) {
-    expect_same_bytes(one, quick_profiles(files, frame, {}, n_threads));
+  for (const int at : {2, 3, 4}) std::filesystem::resize_file(files[at], 1000);
+  for (const int n_threads : {1, 2}) {
+    try {
+      quick_profiles(files, frame, {}, n_threads);
+      FAIL() << "three maps are cut short";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.where(), files[2].string()) << n_threads;
+    }
   }
 }
 
