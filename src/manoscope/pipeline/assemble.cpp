@@ -98,12 +98,12 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
   for (Array1* scalar :
        {&m.flow_rate, &m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
         &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
-        &m.parasitic_drop, &m.en_number}) {
+        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength}) {
     *scalar = Array1::Constant(n, kNan);
   }
-  for (Array2* field :
-       {&m.deflection, &m.deflection_uncertainty, &m.pressure, &m.pressure_uncertainty,
-        &m.pressure_lower, &m.pressure_upper, &m.resistance_pressure}) {
+  for (Array2* field : {&m.deflection, &m.deflection_uncertainty, &m.pressure,
+                        &m.pressure_uncertainty, &m.pressure_lower, &m.pressure_upper,
+                        &m.pressure_local, &m.pressure_local_uncertainty, &m.resistance_pressure}) {
     *field = Array2::Constant(n, n_x, kNan);
   }
   m.pressure_flags = Flags2::Zero(n, n_x);
@@ -123,6 +123,9 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
     m.pressure_uncertainty.row(r) = masked(reading.uncertainty.standard(), answered);
     m.pressure_lower.row(r) = masked(reading.lower, answered);
     m.pressure_upper.row(r) = masked(reading.upper, answered);
+    m.pressure_local.row(r) = masked(found.local_pressure, answered);
+    m.pressure_local_uncertainty.row(r) = masked(found.local_uncertainty, answered);
+    m.half_response_wavelength[r] = found.half_wavelength;
     m.pressure_flags.row(r) = reading.flags;
     Matrix covariance = reading.uncertainty.covariance();
     for (Index i = 0; i < n_x; ++i) {

@@ -22,7 +22,9 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 /// All that was found about one run.
 struct RunFindings {
   inversion::PressureReading reading;
-  inversion::Stretch stretch;  ///< where the test section was looked for
+  Array1 local_pressure, local_uncertainty;  ///< (n_x) Pa, each station on its own; flags as above
+  double half_wavelength = kMissing;         ///< m, of the non-local reading; NaN: there is none
+  inversion::Stretch stretch;                ///< where the test section was looked for
   std::optional<inversion::TestSection> section;
   std::vector<inversion::Intersection> intersections;
   std::optional<validation::DropAgreement> agreement;  ///< needs a test section

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <limits>
+#include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
+#include "manoscope/core/parallel.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/flow/parasitic.hpp"
 #include "manoscope/inversion/end_doubt.hpp"
@@ -54,8 +57,41 @@ void compare_with_flow(const Experiment& experiment, const FlowRun& run, RunFind
       channel, fluid, run.flow_rate, run.profile, found.reading, *found.section);
 }
 
+/// The wall that the experiment tells of, fitted to the calibration; none, with a reason, where it
+/// tells of none or no clamped wall answers as the calibration did.
+std::optional<inversion::NonlocalWall> find_wall(const Experiment& experiment,
+                                                 const calibration::ConstitutiveCurves& curves,
+                                                 const MeasureOptions& options,
+                                                 const Monitor& monitor, std::string& reason) {
+  if (!options.nonlocal.nonlocal) {
+    reason = "switched off";
+    return std::nullopt;
+  }
+  if (!experiment.wall || !experiment.wall->thickness) {
+    reason = "the experiment does not tell wall.thickness";
+    return std::nullopt;
+  }
+  monitor.report("solving the wall", 0.0);
+  const inversion::WallKnowledge known{experiment.channel.length, experiment.channel.width,
+                                       *experiment.wall->thickness, experiment.wall->poisson_ratio};
+  return inversion::make_nonlocal_wall(curves, known, options.nonlocal, monitor, reason);
+}
+
+std::string reading_text(const std::optional<inversion::NonlocalWall>& wall,
+                         const std::string& reason) {
+  if (!wall) return "every station on its own: " + reason;
+  const wall::ClampedWall& fitted = wall->calibrated.wall;
+  return fmt::format(
+      "through the influence operator of a clamped wall fitted to the calibration: E = {:.3g} Pa, "
+      "prestress {:.3g} Pa, preload {:.3g} Pa, nu = {:.2g}; what it makes of non-uniform pressure "
+      "is taken as known to {:.1f} %",
+      fitted.youngs_modulus.si(), fitted.prestress.si(), fitted.preload.load.si(),
+      fitted.poisson_ratio, 100.0 * wall->calibrated.model_error);
+}
+
 RunFindings read_run(const Experiment& experiment, const calibration::ConstitutiveCurves& curves,
-                     const FlowRun& run, const MeasureOptions& options) {
+                     const std::optional<inversion::NonlocalWall>& wall, const FlowRun& run,
+                     const MeasureOptions& options) {
   const flow::Channel channel = channel_of(experiment);
   const inversion::GaugeErrors gauge{
       experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
@@ -67,9 +103,20 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
   found.section =
       inversion::find_test_section(found.reading, channel.length, channel.width, options.section);
   inversion::flag_outside(found.reading, found.section);
+  std::optional<inversion::NonlocalReading> nonlocal;
+  if (wall) {
+    nonlocal =
+        inversion::read_nonlocal(found.reading, *wall, options.reading.coverage, options.nonlocal);
+  }
   if (found.section) {
     inversion::add_end_doubt(found.reading, *found.section, channel.length, channel.width,
                              options.reading.coverage);
+  }
+  found.local_pressure = found.reading.pressure;
+  found.local_uncertainty = found.reading.uncertainty.standard();
+  if (nonlocal) {
+    found.reading = std::move(nonlocal->pressure);
+    found.half_wavelength = nonlocal->half_wavelength;
   }
   found.intersections = inversion::find_intersections(curves.estimated_levels(), run.profile,
                                                       channel.width, options.intersections);
@@ -147,6 +194,7 @@ void MeasureOptions::validate() const {
   reduce.validate();
   curves.validate();
   reading.validate();
+  nonlocal.validate();
   section.validate();
   intersections.validate();
 }
@@ -162,15 +210,20 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
       calibration::fit_curves(make_levels(experiment, reduced.hydrostatic), options.curves);
 
   const std::vector<FlowRun> runs = make_runs(experiment, reduced.flow);
-  std::vector<RunFindings> findings;
-  for (const FlowRun& run : runs) {
+  std::string no_wall;
+  const auto wall =
+      runs.empty() ? std::nullopt : find_wall(experiment, curves, options, monitor, no_wall);
+  std::vector<RunFindings> findings(runs.size());
+  std::atomic<int> done{0};
+  parallel_for(static_cast<Index>(runs.size()), n_threads, [&](Index r) {
     monitor.checkpoint();
-    monitor.report("reading p(x)",
-                   static_cast<double>(findings.size()) / static_cast<double>(runs.size()));
-    findings.push_back(read_run(experiment, curves, run, options));
-  }
+    const auto at = static_cast<std::size_t>(r);
+    findings[at] = read_run(experiment, curves, wall, runs[at], options);
+    monitor.report("reading p(x)", static_cast<double>(++done) / static_cast<double>(runs.size()));
+  });
   results::Measurement measurement;
   store_provenance(experiment, reduced, options, measurement);
+  measurement.reading = reading_text(wall, no_wall);
   store_calibration(curves, experiment, reduced.hydrostatic, measurement);
   store_runs(runs, findings, measurement);
   measurement.flow_rate_uncertainty =

@@ -6,6 +6,7 @@
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/inversion/intersections.hpp"
+#include "manoscope/inversion/read_nonlocal.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
 #include "manoscope/maps/reduce.hpp"
@@ -18,6 +19,7 @@ struct MeasureOptions {
   maps::ReduceOptions reduce;
   calibration::FitCurvesOptions curves;
   inversion::ReadPressureOptions reading;
+  inversion::ReadNonlocalOptions nonlocal;
   inversion::TestSectionOptions section;
   inversion::IntersectionOptions intersections;
 
@@ -26,6 +28,7 @@ struct MeasureOptions {
     reduce.describe(visit);
     curves.describe(visit);
     reading.describe(visit);
+    nonlocal.describe(visit);
     section.describe(visit);
     intersections.describe(visit);
   }

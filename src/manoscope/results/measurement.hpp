@@ -20,6 +20,7 @@ struct Measurement {
   std::string experiment;             ///< the whole experiment.toml
   std::string inputs;                 ///< one "name  sha256" a line
   std::string settings;               ///< one "name = value" a line: every option in force
+  std::string reading;                ///< how p(x) was read: by which wall, or why by none
   std::vector<std::string> warnings;  ///< doubts worth a person's time, in words
 
   // Scalars.
@@ -47,9 +48,12 @@ struct Measurement {
   Array2 deflection, deflection_uncertainty;  ///< (n_r, n_x) m
   Array2 pressure, pressure_uncertainty;      ///< (n_r, n_x) Pa
   Array2 pressure_lower, pressure_upper;      ///< (n_r, n_x) Pa
-  std::vector<Matrix> pressure_covariance;    ///< n_r of (n_x, n_x) Pa2
-  Flags2 pressure_flags;                      ///< (n_r, n_x) bits of ReadingFlag
-  Array2 test_section;                        ///< (n_r, 2) m: x_start, x_end
+  /// Each station on its own, before the wall's neighbourhood is taken into account.
+  Array2 pressure_local, pressure_local_uncertainty;  ///< (n_r, n_x) Pa
+  Array1 half_response_wavelength;                    ///< (n_r) m; NaN: read station by station
+  std::vector<Matrix> pressure_covariance;            ///< n_r of (n_x, n_x) Pa2
+  Flags2 pressure_flags;                              ///< (n_r, n_x) bits of ReadingFlag
+  Array2 test_section;                                ///< (n_r, 2) m: x_start, x_end
   /// Budget: variance of p(x) by source; a name for each and one (n_r, n_x) array of Pa2.
   std::vector<std::string> budget_source;
   std::vector<Array2> pressure_variance;

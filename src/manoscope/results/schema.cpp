@@ -48,6 +48,7 @@ const std::vector<GlobalText>& global_texts() {
       {"experiment", &M::experiment, "the whole experiment.toml"},
       {"inputs", &M::inputs, "name and SHA-256 of every map, one a line"},
       {"settings", &M::settings, "every option in force, one a line"},
+      {"reading", &M::reading, "how p(x) was read: by which wall, or why by none"},
   };
   return list;
 }
@@ -176,6 +177,24 @@ const std::vector<Variable>& variables() {
        "Pa",
        "upper end of the coverage interval of the pressure",
        &M::pressure_upper},
+      {"pressure_local",
+       {"run", "x"},
+       "Pa",
+       "gauge pressure with each station read on its own, as if the wall did not feel its "
+       "neighbourhood",
+       &M::pressure_local,
+       "pressure_local_uncertainty"},
+      {"pressure_local_uncertainty",
+       {"run", "x"},
+       "Pa",
+       "standard uncertainty of that, k = 1",
+       &M::pressure_local_uncertainty},
+      {"half_response_wavelength",
+       {"run"},
+       "m",
+       "wavelength of a ripple of the pressure, at mid-channel, of which the wall shows half; "
+       "missing where each station was read on its own",
+       &M::half_response_wavelength},
       {"pressure_covariance",
        {"run", "x", "x_other"},
        "Pa2",

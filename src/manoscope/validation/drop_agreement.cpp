@@ -68,8 +68,11 @@ class Propagation {
     }
     for (const Index ix : {first, last}) {
       const double sign = ix == first ? 1.0 : -1.0;
-      const double state_part = state_.uncertainty.independent[ix] / reading_.slope[ix];
+      // A reading over many stations holds its noise in modes: that a few of them are in QR, too,
+      // is far below either uncertainty.
       const double all = reading_.uncertainty.independent[ix];
+      const double state_part =
+          std::min(state_.uncertainty.independent[ix] / reading_.slope[ix], all);
       drop.terms.push_back({flow_noise(ix), "pixel noise", sign * state_part});
       drop.terms.push_back({fmt::format("noise of the curves at station {}", ix), "pixel noise",
                             std::sqrt(std::max(0.0, all * all - state_part * state_part))});
