@@ -148,6 +148,13 @@ TEST(StripSnap, OfTheNitrideWallIsHundredthsOfAPascalAndGrowsAsTheRootOfItsCompr
   EXPECT_NEAR(std::log10(tight.bears() / slack.bears()), 0.5, 0.015);
 }
 
+TEST(StripSnap, OfTheBuckledWallThatShipsIsWhatItsPageSays) {
+  const WallSection wall{1.7 * mm, 3.0 * um, 250.0 * GPa, 0.23, -10.0 * MPa};
+  EXPECT_NEAR(strip_snap(wall).limit.si(), 140.6, 0.05);
+  EXPECT_NEAR(strip_snap(wall).bears().si(), 124.0, 0.5);
+  EXPECT_NEAR(wall.prestress / PlateStrip::buckling_prestress(wall), 3.7, 0.05);
+}
+
 TEST(StripSnap, RefusesAStripThatIsNotBuckledOrShears) {
   EXPECT_THROW(strip_snap(nitride(Pressure{})), InputError);
   EXPECT_THROW(strip_snap(buckled(0.99)), InputError);
