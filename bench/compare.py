@@ -24,6 +24,9 @@ PLACE_TOLERANCE_M = 1e-12  # of where a wall lies, along and across the flow
 # What the ratios ought to be; a miss is told and is no failure, for speed is no test.
 GOAL_NUMPY_REDUCTION, GOAL_NUMPY_ONE_PASS = 5.0, 10.0
 GOAL_OVER_READ, GOAL_TWO_THREADS = 1.5, 1.7
+# What the wall and the twin promise, on one core that does nothing else.
+LIMITS = {"one wall state of S1": (0.5, "s"), "the whole virtual experiment": (60.0, "s"),
+          "its peak memory": (2000.0, "MB")}
 ONE_THREAD = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS",
                                      "BLIS_NUM_THREADS", "NUMEXPR_NUM_THREADS")}
 
@@ -179,6 +182,30 @@ def time_twin(manoscope, experiment):
     return table
 
 
+def time_wall_state(programs):
+    """Processor seconds of one wall state of S1 from rest, by the benchmark of the stages."""
+    done = subprocess.run([programs / "bench_stages", "--benchmark_filter=^wall_state$",
+                           "--benchmark_format=json"], check=True, capture_output=True, text=True)
+    figure, = json.loads(done.stdout)["benchmarks"]
+    return figure["cpu_time"] * {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}[figure["time_unit"]]
+
+
+def held_against_limits(wall_state_s, twin):
+    """Lines that say what was found and allowed, and whether every limit is kept.
+
+    Processor time: on a machine that is shared, wall time tells of the others.
+    """
+    one = twin["threads_1"]
+    lines, kept = [], True
+    for (what, (limit, unit)), found in zip(LIMITS.items(),
+                                            (wall_state_s, one["cpu_s"], one["peak_MB"])):
+        good = found <= limit
+        kept = kept and good
+        lines.append(f"{what:32}{found:9.3g} {unit:3} of {limit:g} {unit} allowed"
+                     f"{'' if good else ': EXCEEDED'}")
+    return lines, kept
+
+
 def time_measure(manoscope, repetitions, experiment, out):
     table = {"maps": len(list(experiment.glob("*.gsf"))), "repetitions": repetitions}
     for threads in sorted({1, os.cpu_count() or 1}):
@@ -280,13 +307,19 @@ def main():
         twin = time_twin(arguments.manoscope, experiment)
         print_program(f"manoscope twin S1: {twin['maps']} wall states, nine of them coupled to the "
                       "flow, and their maps of 1024 x 192; one run", twin)
+        wall_state_s = time_wall_state(arguments.programs)
+        limits, kept = held_against_limits(wall_state_s, twin)
+        print("\nLimits, processor time of one thread\n" + "\n".join(limits))
         measure = time_measure(arguments.manoscope, min(3, arguments.repetitions), experiment,
                                Path(name) / "result")
         print_program(f"manoscope measure: {measure['maps']} maps of 1024 x 192 to p(x), figures "
                       f"and report; median of {measure['repetitions']}", measure)
     if arguments.json:
-        figures = {"reduction": reduction, "linear": linear, "twin": twin, "measure": measure}
+        figures = {"reduction": reduction, "linear": linear, "twin": twin, "wall_state_s": wall_state_s,
+                   "limits_kept": kept, "measure": measure}
         arguments.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
+    if not kept:
+        sys.exit("a limit is exceeded: see above")
 
 
 if __name__ == "__main__":

@@ -52,6 +52,26 @@ std::string pressure_table(const results::Measurement& m, Index first, Index las
   return text_table(rows);
 }
 
+/// What a user should know of a wall that left its branch; nothing of one that did not.
+std::string snaps_text(const twin::Truth& truth) {
+  std::string text;
+  const auto add = [&](const std::string& where, const twin::SnapTruth& snaps) {
+    if (snaps.n == 0) return;
+    text += fmt::format("{}  {}: {} snap{}, the furthest of {:+.3g} um at x = {:.2f} mm\n",
+                        text.empty() ? "\nThe wall snapped through on the way to\n" : "", where,
+                        snaps.n, snaps.n == 1 ? "" : "s", snaps.jump * 1e6, snaps.at * 1e3);
+  };
+  for (const auto& level : truth.levels) {
+    add(fmt::format("{:g} Pa ({})", level.pressure.si(), level.map), level.snaps);
+  }
+  for (const auto& run : truth.runs) add(run.run, run.snaps);
+  return text;
+}
+
+json snaps_json(const twin::SnapTruth& snaps) {
+  return {{"n", snaps.n}, {"jump_m", snaps.jump}, {"x_m", snaps.at}};
+}
+
 }  // namespace
 
 std::string summary_text(const results::Measurement& m) {
@@ -127,9 +147,9 @@ std::string twin_text(const twin::VirtualExperiment& made, const std::filesystem
   }
   return fmt::format(
       "{}: {} maps in {}, their truth in {}\n\nTrue values (S: speed of "
-      "the flow over that of the wall's waves)\n{}",
+      "the flow over that of the wall's waves)\n{}{}",
       made.header.name, made.maps.size(), folder.string(), (folder / "truth").string(),
-      text_table(rows));
+      text_table(rows), snaps_text(made.truth));
 }
 
 std::string twin_json(const twin::VirtualExperiment& made, const std::filesystem::path& folder) {
@@ -143,13 +163,18 @@ std::string twin_json(const twin::VirtualExperiment& made, const std::filesystem
                     {"parasitic_drop_Pa", run.parasitic.si()},
                     {"largest_deflection_m", run.largest_deflection.si()},
                     {"reynolds", run.reynolds},
-                    {"speed_index", run.speed_index}});
+                    {"speed_index", run.speed_index},
+                    {"snaps", snaps_json(made.truth.runs[i].snaps)}});
   }
-  return json{{"name", made.header.name},
-              {"seed", made.header.seed},
-              {"folder", folder.string()},
-              {"maps", made.maps.size()},
-              {"runs", runs}}
+  json levels = json::array();
+  for (const twin::LevelTruth& level : made.truth.levels) {
+    levels.push_back({{"map", level.map},
+                      {"pressure_Pa", level.pressure.si()},
+                      {"label_Pa", level.label.si()},
+                      {"snaps", snaps_json(level.snaps)}});
+  }
+  return json{{"name", made.header.name}, {"seed", made.header.seed}, {"folder", folder.string()},
+              {"maps", made.maps.size()}, {"levels", levels},         {"runs", runs}}
              .dump(2) +
          "\n";
 }

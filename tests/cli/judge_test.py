@@ -27,7 +27,8 @@ class Judge(DemoFolder):
         names = ["judge.csv", "judge.json", "judge_deflections.csv"]
         if shutil.which("gnuplot"):
             names += [f"figures/judge_error_run0{i}.svg" for i in range(1, 5)]
-            names += ["figures/judge_pulls.svg", "figures/judge_coverage.svg"]
+            names += ["figures/judge_pulls.svg", "figures/judge_along.svg",
+                      "figures/judge_coverage.svg"]
         self.assertEqual(sorted(hashes(out)), sorted(names))
         before = hashes(out)
         (out / "figures").mkdir(exist_ok=True)

@@ -10,6 +10,7 @@ import pathlib
 import signal
 import subprocess
 import time
+import unittest
 
 from support import Folder, PROGRAM, hashes, run, main
 
@@ -216,6 +217,44 @@ outlet_pressure = "300 Pa"
         run("twin", plate, "-o", out, "--size", "64x32", check_code=0)
         self.assertIn("stands there already", self.refused(plate, "-o", out))
         run("twin", plate, "-o", out, "--size", "64x32", "--overwrite", check_code=0)
+
+    @unittest.skipUnless(hasattr(os, "geteuid"), "needs users")
+    def test_a_folder_that_may_not_be_written_to_is_told(self):
+        closed = self.folder / "closed"
+        closed.mkdir()
+        closed.chmod(0o555)
+        self.folder.chmod(0o755)
+        # Permissions do not bind the superuser: it steps back to nobody.
+        user = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}
+        try:
+            done = subprocess.run([PROGRAM, "twin", str(self.short_plate()), "-o",
+                                   str(closed / "out"), "--size", "64x32"], text=True,
+                                  capture_output=True, **user)
+        except PermissionError:
+            self.skipTest("nobody may not run the program where it lies")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn(str(closed), done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(list(closed.iterdir()), [])
+
+    # 1 um of nitride, compressed to three times what buckles it; rests a little inward.
+    BUCKLED = {"height": '"60 um"', "prestress": '"-1.6 MPa"\ninitial_crest = "-0.05 um"',
+               "levels": '["0 Pa", "80 Pa", "160 Pa", "1 kPa"]', "flow_rates": '["5 mL/min"]'}
+
+    def test_a_wall_that_snaps_through_is_told(self):
+        path = self.short_plate(**self.BUCKLED)
+        done = run("twin", path, "-o", self.folder / "a", "--size", "64x32", check_code=0)
+        self.assertIn("The wall snapped through on the way to\n  80 Pa (h01.gsf): 1 snap, the "
+                      "furthest of +", done.stdout)
+        told = json.loads(run("twin", path, "-o", self.folder / "b", "--size", "64x32", "--json",
+                              check_code=0).stdout)
+        self.assertEqual([level["snaps"]["n"] for level in told["levels"]], [0, 1, 0, 0])
+        self.assertGreater(told["levels"][1]["snaps"]["jump_m"], 0.1e-6)
+        self.assertEqual([run_["snaps"]["n"] for run_ in told["runs"]], [1])
+        # A taut one does not, and nothing is said.
+        done = run("twin", self.short_plate(), "-o", self.folder / "c", "--size", "64x32",
+                   check_code=0)
+        self.assertNotIn("snapped", done.stdout)
 
     def scenario(self, *changes):
         """S1 as a file, with changes."""

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "manoscope/core/error.hpp"
+#include "tests/support/as_ordinary_user.hpp"
 
 namespace manoscope {
 namespace {
@@ -98,32 +99,20 @@ TEST_F(AtomicFileTest, AMissingFolderOrAFolderAsTargetIsTheUsersToMend) {
   EXPECT_THROW(write_file_atomically("", "text"), InputError);
 }
 
-/// Permissions do not bind the superuser: acts as nobody while it lives, where that is possible.
-class AsOrdinaryUser {
- public:
-  AsOrdinaryUser() : before_(::geteuid()) {
-    if (before_ == 0) static_cast<void>(::seteuid(65534));
-  }
-  ~AsOrdinaryUser() { static_cast<void>(::seteuid(before_)); }
-
- private:
-  uid_t before_;
-};
-
 TEST_F(AtomicFileTest, PermissionsAreRespected) {
   write_file_atomically(folder_ / "protected", "old");
   fs::permissions(folder_ / "protected", fs::perms::owner_read | fs::perms::others_read);
   fs::permissions(folder_, fs::perms::all);
   {
-    const AsOrdinaryUser nobody;
-    if (::geteuid() == 0) GTEST_SKIP() << "cannot act as an ordinary user here";
+    const test_support::AsOrdinaryUser nobody;
+    if (!nobody.holds()) GTEST_SKIP() << "cannot act as an ordinary user here";
     EXPECT_THROW(write_file_atomically(folder_ / "protected", "new"), InputError);
     EXPECT_NO_THROW(write_file_atomically(folder_ / "x", "new"));
   }
   EXPECT_EQ(content(folder_ / "protected"), "old");
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
   {
-    const AsOrdinaryUser nobody;
+    const test_support::AsOrdinaryUser nobody;
     EXPECT_THROW(write_file_atomically(folder_ / "y", "new"), InputError);
   }
 }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/uncertainty.hpp"
 #include "manoscope/report/figure_data.hpp"
 #include "manoscope/report/plot_script.hpp"
 
@@ -241,6 +242,70 @@ std::optional<Figure> pulls(const Measurement& m, const std::vector<JudgedRun>& 
       script.text()};
 }
 
+std::optional<Figure> pulls_along(const Measurement& m, const std::vector<JudgedRun>& judged) {
+  constexpr double kEnd = 5.0;
+  const ReportUnits units = report_units(m);
+  const Index n_x = m.x.size();
+  // Means over the runs at each station: of the square of the pull, and of what its bars hold.
+  Array1 squares = Array1::Zero(n_x), held = squares, count = squares;
+  PlotScript script;
+  script.set(common_settings());
+  script.set("set multiplot\nset lmargin at screen 0.12\nset rmargin at screen 0.97");
+  script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
+  script.set("set tmargin at screen 0.965\nset bmargin at screen 0.53\nset format x ''");
+  script.set(fmt::format("set yrange [{}:{}]\nset ylabel 'pull'", plain(-kEnd), plain(kEnd)));
+  const Array1 x = thinned(m.x) / units.x.si;
+  for (Index r = 0; r < static_cast<Index>(judged.size()); ++r) {
+    const JudgedRun& run = judged[static_cast<std::size_t>(r)];
+    Array1 pull = Array1::Constant(n_x, kNan);
+    for (Index i = 0; i < n_x; ++i) {
+      const double one = (m.pressure(r, i) - run.true_pressure[i]) / m.pressure_uncertainty(r, i);
+      if (!is_inside(run, m.x[i]) || !std::isfinite(one)) continue;
+      pull[i] = one;
+      count[i] += 1.0;
+      squares[i] += one * one;
+      if (m.pressure_lower(r, i) <= run.true_pressure[i] &&
+          run.true_pressure[i] <= m.pressure_upper(r, i)) {
+        held[i] += 1.0;
+      }
+    }
+    if (!pull.isFinite().any()) continue;
+    script.draw(script.add_data({x, thinned(pull)}),
+                fmt::format("using 1:2 with lines lw 1 lc rgb '{}' notitle", kBlue));
+  }
+  if (count.maxCoeff() == 0.0) return std::nullopt;
+  const Array1 ends{{0.0, m.channel_length / units.x.si}};
+  for (const double sign : {-1.0, 1.0}) {
+    script.draw(script.add_data({ends, Array1::Constant(2, sign * kExpansion)}),
+                fmt::format("using 1:2 with lines dt 2 lw 1.4 lc rgb '{}' notitle", kGrey));
+  }
+  const Array1 mean = (count > 0.0).select(1.0 / count.max(1.0), Array1::Constant(n_x, kNan));
+  script.draw(
+      script.add_data({x, thinned(Array1((squares * mean).sqrt()))}),
+      fmt::format("using 1:2 with lines lw 2 lc rgb '{}' {}", kBlack, title("rms over the runs")));
+  script.plot();
+  script.set("set tmargin at screen 0.48\nset bmargin at screen 0.11\nset format x '%g'");
+  script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  script.set("set yrange [0:106]\nset ytics 20\nset ylabel 'runs within their bars (%)'");
+  script.draw(script.add_data({ends, Array1::Constant(2, 100.0 * m.coverage)}),
+              fmt::format("using 1:2 with lines dt 2 lw 1.4 lc rgb '{}' {}", kGrey,
+                          title(fmt::format("nominal {:.3g} %", 100.0 * m.coverage))));
+  script.draw(script.add_data({x, thinned(Array1(100.0 * held * mean))}),
+              fmt::format("using 1:2 with lines lw 2 lc rgb '{}' notitle", kRed));
+  script.plot();
+  script.set("unset multiplot");
+  return Figure{
+      "judge_along",
+      "Pulls and coverage along the channel",
+      "Above: error over stated standard uncertainty at every station, a line for each run, their "
+      "rms in black, dashed the ends of the 95 % interval. Below: the share of the runs whose "
+      "interval holds the truth, station by station. Runs share the errors of the calibration: "
+      "where one is off the others often are, too.",
+      640,
+      620,
+      script.text()};
+}
+
 std::optional<Figure> coverage_by_run(const Measurement& m, const std::vector<JudgedRun>& judged) {
   const ReportUnits units = report_units(m);
   const auto n = static_cast<Index>(judged.size());
@@ -305,6 +370,7 @@ std::vector<results::ExtraFile> judged_figures(const Measurement& m,
   std::vector<std::optional<Figure>> list;
   for (Index r = 0; r < m.flow_rate.size(); ++r) list.push_back(error_of_run(m, judged, r));
   list.push_back(pulls(m, judged));
+  list.push_back(pulls_along(m, judged));
   list.push_back(coverage_by_run(m, judged));
   std::vector<results::ExtraFile> files;
   for (const auto& figure : list) {

@@ -29,12 +29,16 @@ std::optional<Figure> error_of_run(const results::Measurement& measurement,
 /// Pulls of all stations in the stretches, each run with the same weight, against the normal law.
 std::optional<Figure> pulls(const results::Measurement& measurement,
                             const std::vector<JudgedRun>& judged);
+/// Pulls of every run along x, and the share of the runs whose interval holds the truth at each
+/// station.
+std::optional<Figure> pulls_along(const results::Measurement& measurement,
+                                  const std::vector<JudgedRun>& judged);
 /// Share of stations within their 68 % and 95 % bars, run by run.
 std::optional<Figure> coverage_by_run(const results::Measurement& measurement,
                                       const std::vector<JudgedRun>& judged);
 
 /// All of them drawn, ready for a Publication: figures/judge_error_run01.svg ... (in the order of
-/// the measurement), figures/judge_pulls.svg, figures/judge_coverage.svg.
+/// the measurement), figures/judge_pulls.svg, figures/judge_along.svg, figures/judge_coverage.svg.
 ///
 /// @return nothing where gnuplot is not installed.
 /// @throws InternalError if gnuplot does not accept a script.

@@ -41,10 +41,11 @@ TEST(JudgedFigures, AreDrawnForEveryRunAndForAllTogether) {
   if (!run_gnuplot("exit")) GTEST_SKIP() << "gnuplot is not installed";
   const Measurement m = example();
   const auto files = judged_figures(m, judged_runs(m));
-  ASSERT_EQ(files.size(), 4u);
+  ASSERT_EQ(files.size(), 5u);
   EXPECT_EQ(files[0].name, "figures/judge_error_run01.svg");
   EXPECT_EQ(files[2].name, "figures/judge_pulls.svg");
-  EXPECT_EQ(files[3].name, "figures/judge_coverage.svg");
+  EXPECT_EQ(files[3].name, "figures/judge_along.svg");
+  EXPECT_EQ(files[4].name, "figures/judge_coverage.svg");
   for (const auto& file : files) {
     EXPECT_NE(file.bytes.find("</svg>"), std::string::npos) << file.name;
   }
@@ -97,12 +98,28 @@ TEST(JudgedFigures, ShowPullsBeyondFourApart) {
   EXPECT_EQ(pulls(m, judged)->script.find("all beyond"), std::string::npos);
 }
 
+TEST(JudgedFigures, ShowPullsAndCoverageStationByStation) {
+  const Measurement m = example();
+  auto judged = judged_runs(m);
+  // The first run is off by 1.5 of its uncertainties, the second by 10: of the two one interval
+  // holds the truth everywhere.
+  for (const Index r : {0, 1}) {
+    judged[static_cast<std::size_t>(r)].true_pressure =
+        (m.pressure.row(r) - (r == 0 ? 1.5 : 10.0) * m.pressure_uncertainty.row(r)).transpose();
+  }
+  const std::string script = pulls_along(m, judged)->script;
+  EXPECT_NE(script.find(" 1.5\n"), std::string::npos) << script;
+  EXPECT_NE(script.find(" 50\n"), std::string::npos) << script;
+  EXPECT_EQ(script.find(" 100\n"), std::string::npos) << script;
+}
+
 TEST(JudgedFigures, ShowNothingWithoutAStretch) {
   const Measurement m = example();
   auto judged = judged_runs(m);
   for (auto& run : judged) run.x_start = run.x_end = kNan;
   EXPECT_FALSE(pulls(m, judged));
   EXPECT_FALSE(coverage_by_run(m, judged));
+  EXPECT_FALSE(pulls_along(m, judged));
   EXPECT_TRUE(error_of_run(m, judged, 0));  // the error itself needs none
 }
 

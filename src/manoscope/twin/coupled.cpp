@@ -16,13 +16,18 @@ namespace manoscope::twin {
 namespace {
 
 constexpr const char* kWhere = "coupled flow";
+constexpr const char* kMendChoking =
+    "Lower the flow rate, raise the outlet pressure, or take a stiffer wall: at S^2 = 1 the flow "
+    "is "
+    "as fast as the waves of the wall, and no steady flow exists beyond";
 /// Largest relative change of the drop between n/2 and n steps; the error of n steps is a
 /// fifteenth.
 constexpr double kMostChange = 1e-3;
-constexpr double kSettled = 1e-9;       // largest residual of p, of the drop
-constexpr int kMostIterations = 20;     // of Newton's method at one flow rate
-constexpr int kMostHalvings = 6;        // of one Newton step
-constexpr double kNearlyChoked = 0.7;   // S^2 of the last flow found where no further one is
+constexpr double kSettled = 1e-9;      // largest residual of p, of the drop
+constexpr int kMostIterations = 20;    // of Newton's method at one flow rate
+constexpr int kMostHalvings = 6;       // of one Newton step
+constexpr double kNearlyChoked = 0.7;  // S^2 of the last flow found where no further one is
+constexpr int kAcross = 15;  // points across at which contact with the floor is looked for
 constexpr double kShortest = 1.0 / 64;  // of the way from the start to the flow rate asked for
 /// The wall is loaded at so many even cells, p between the nodes by cubics: what p of the paper's
 /// channels bends within one is below 1 mPa.
@@ -111,20 +116,31 @@ class MomentumEquation {
   double flux_;  ///< beta rho, kg/m^3
 };
 
-/// Where the wall touches the floor, m; none where it is clear of it.
-std::optional<double> contact(const flow::Channel& channel, const WallAtRest& wall,
-                              const Array1& x) {
+/// A place on the wall, m.
+struct Place {
+  double x, z;
+};
+
+/// Where the wall touches the floor; none where it is clear of it. Looked for at the stations, each
+/// at kAcross even points from side to side: a folded wall hangs lowest off its centre line.
+std::optional<Place> contact(const flow::Channel& channel, const WallAtRest& wall,
+                             const Array1& x) {
+  const double width = channel.width.si();
   for (Index i = 0; i < x.size(); ++i) {
-    if (!(channel.height.si() + wall.shape(x(i), 0.0) > 0.0)) return x(i);
+    for (int k = 1; k <= kAcross; ++k) {
+      const double z = (static_cast<double>(k) / (kAcross + 1) - 0.5) * width;
+      if (!(channel.height.si() + wall.shape(x(i), z) > 0.0)) return Place{x(i), z};
+    }
   }
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_contact(double x, double p, FlowRate flow_rate) {
+[[noreturn]] void refuse_contact(const Place& at, double p, FlowRate flow_rate) {
   throw InputError(
       kWhere,
-      fmt::format("the wall touches the floor at x = {:.4g} mm under {:.4g} Pa, {:.3g} mL/min",
-                  x * 1e3, p, flow_rate.in(mL_per_min)),
+      fmt::format("the wall touches the floor at x = {:.4g} mm, z = {:.3g} mm, under {:.4g} Pa, "
+                  "{:.3g} mL/min",
+                  at.x * 1e3, at.z * 1e3, p, flow_rate.in(mL_per_min)),
       "Raise the channel height or the outlet pressure, or lower the preload of the wall");
 }
 
@@ -199,7 +215,16 @@ class Solver {
     if (contact_) refuse_contact(*contact_, outlet, FlowRate::from_si(flow_rate));
     if (beyond_) refuse_rise(wall_, *beyond_, FlowRate::from_si(flow_rate));
     const Choking choking = last ? choking_of(last_flow_rate, *last) : Choking{};
-    if (choking.square >= kNearlyChoked) refuse_choking(last_flow_rate, choking);
+    if (choking.square >= kNearlyChoked) {
+      throw InputError(
+          kWhere,
+          fmt::format(
+              "no flow is found at {:.4g} mL/min, and the last one found, at {:.4g} mL/min, "
+              "is close to choking: S^2 = {:.3g} at x = {:.4g} mm",
+              FlowRate::from_si(flow_rate).in(mL_per_min),
+              FlowRate::from_si(last_flow_rate).in(mL_per_min), choking.square, choking.at * 1e3),
+          kMendChoking);
+    }
     throw InputError(kWhere,
                      fmt::format("flow and wall find no common state at {:.4g} mL/min; at {:.4g} "
                                  "mL/min S^2 was {:.2g}",
@@ -216,7 +241,8 @@ class Solver {
                             double outlet) {
     Iterate made;
     made.pressure = pressure;
-    contact_ = beyond_ = std::nullopt;
+    contact_ = std::nullopt;
+    beyond_ = std::nullopt;
     const double largest = pressure.abs().maxCoeff();
     if (largest > wall_.largest_pressure.si()) {
       beyond_ = largest;  // no need to see what a law says that does not hold there
@@ -243,8 +269,7 @@ class Solver {
         kWhere,
         fmt::format("the channel chokes: at {:.4g} mL/min S^2 reaches {:.3g} at x = {:.4g} mm",
                     FlowRate::from_si(flow_rate).in(mL_per_min), choking.square, choking.at * 1e3),
-        "Lower the flow rate, raise the outlet pressure, or take a stiffer wall: at S^2 = 1 the "
-        "flow is as fast as the waves of the wall, and no steady flow exists beyond");
+        kMendChoking);
   }
 
   flow::Channel channel_;
@@ -252,8 +277,8 @@ class Solver {
   MomentumEquation equation_;
   const Monitor& monitor_;
   // Of the last wall that was tried:
-  std::optional<double> contact_;  ///< where it touched the floor, m
-  std::optional<double> beyond_;   ///< pressure under which its law does not hold, Pa
+  std::optional<Place> contact_;  ///< where it touched the floor
+  std::optional<double> beyond_;  ///< pressure under which its law does not hold, Pa
 };
 
 void check_inputs(const flow::Channel& channel, const WallModel& wall, FlowRate flow_rate,

@@ -247,6 +247,31 @@ TEST(CoupledFlow, SaysWhereTheWallTouchesTheFloor) {
             std::string::npos);
 }
 
+TEST(CoupledFlow, SeesAFoldThatTouchesTheFloorOffTheCentreLine) {
+  // A wall that hangs down in two folds, beside its centre line: 50 um at a quarter of the width.
+  WallModel wall;
+  wall.length = 15.5 * mm;
+  wall.load = [](const WallAtRest&, const Array1&, const Array1&) {
+    WallAtRest made;
+    made.shape = [](double, double z) {
+      return -50e-6 * std::pow(std::sin(6.283185307179586 * z / 1.7e-3), 2);
+    };
+    made.deflection = [](const Array1& x) { return Array1(Array1::Constant(x.size(), -25e-6)); };
+    return made;
+  };
+  flow::Channel channel = small_s1().channel;
+  channel.height = 40.0 * um;
+  try {
+    fill_channel(channel, wall, {}, Pressure{});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(error.found().find("touches the floor at x = 0 mm, z = -0."), std::string::npos)
+        << error.found();
+  }
+  channel.height = 51.0 * um;
+  EXPECT_NO_THROW(fill_channel(channel, wall, {}, Pressure{}));
+}
+
 TEST(CoupledFlow, SaysWhenTheChannelChokes) {
   // A soft wall over a low gap and a fluid of little viscosity: S is much the same everywhere.
   Scenario scenario = small_s1();
@@ -261,8 +286,12 @@ TEST(CoupledFlow, SaysWhenTheChannelChokes) {
   for (; flow_rate < 300.0; flow_rate *= 1.1) {
     const std::string answer = refusal(scenario, flow_rate * mL_per_min);
     if (answer != "a flow") {
-      EXPECT_NE(answer.find("the channel chokes: at "), std::string::npos) << answer;
-      EXPECT_NE(answer.find("S^2 reaches "), std::string::npos) << answer;
+      // Newton's method ends before S = 1: what is said of the last flow found is true of it.
+      const auto at = answer.find("is close to choking: S^2 = ");
+      ASSERT_NE(at, std::string::npos) << answer;
+      const double square = std::stod(answer.substr(at + 27));
+      EXPECT_LT(square, 1.0);
+      EXPECT_GE(square, 0.7);
       break;
     }
     const double index = solve(scenario, flow_rate * mL_per_min).speed_index;

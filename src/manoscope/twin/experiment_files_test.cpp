@@ -1,7 +1,6 @@
 #include "manoscope/twin/experiment_files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/io/csv_table.hpp"
 #include "manoscope/io/reader.hpp"
+#include "tests/support/as_ordinary_user.hpp"
 
 namespace manoscope::twin {
 namespace {
@@ -140,9 +140,27 @@ TEST_F(ExperimentFolder, ThatCannotBeMadeIsAClearError) {
   std::ofstream(folder_ / "taken") << "a file";
   const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
   EXPECT_THROW(write_experiment(folder_ / "taken", experiment), InputError);
-  if (geteuid() == 0) return;  // root may write anywhere
-  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_THROW(write_experiment(folder_ / "new", experiment), InputError);
+}
+
+TEST_F(ExperimentFolder, ThatMayNotBeWrittenToIsAClearErrorAndStaysAsItWas) {
+  fs::create_directories(folder_);
+  const VirtualExperiment experiment = make_virtual_experiment(scenario_, 1);
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                               fs::perms::others_exec);
+  {
+    const test_support::AsOrdinaryUser nobody;
+    if (!nobody.holds()) GTEST_SKIP() << "cannot act as an ordinary user here";
+    for (const fs::path& target : {folder_, folder_ / "new"}) {
+      try {
+        write_experiment(target, experiment);
+        ADD_FAILURE() << "wrote to " << target;
+      } catch (const InputError& error) {
+        EXPECT_NE(error.where().find(folder_.string()), std::string::npos) << error.where();
+      }
+    }
+  }
+  fs::permissions(folder_, fs::perms::owner_all);
+  EXPECT_TRUE(fs::is_empty(folder_));
 }
 
 TEST(ExperimentToml, StatesEveryValueWithItsUnit) {

@@ -140,6 +140,8 @@ WallModel Scenario::wall_model(const Monitor& monitor) const {
   options.n_cells_x = wall_grid.n_cells_x;
   options.n_cells_z = wall_grid.n_cells_z;
   options.design_pressure = *std::max_element(levels.begin(), levels.end());
+  // A snap runs along a long wall as a front, a cell or less at a factorisation.
+  options.max_iterations = 1000;
   return plate_model(wall, options, monitor);
 }
 

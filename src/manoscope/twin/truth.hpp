@@ -9,11 +9,19 @@
 
 namespace manoscope::twin {
 
+/// Snap-throughs of a wall on its way to a level or run from the one before.
+struct SnapTruth {
+  int n = 0;          ///< branches of states that ended
+  double jump = 0.0;  ///< of the width-averaged zeta at one station, the furthest, m; with its sign
+  double at = 0.0;    ///< that station, m; 0 without a snap
+};
+
 /// What was true along the channel during one run.
 struct RunTruth {
   std::string run;
   Array1 pressure;    ///< (n) gauge pressure p(x), Pa
   Array1 deflection;  ///< (n) width-averaged zeta(x), m
+  SnapTruth snaps{};  ///< since the run before; the first, since rest
 };
 
 /// What was true of one calibration level.
@@ -23,6 +31,7 @@ struct LevelTruth {
   Pressure label{};     ///< as the gauge read it
   Array1 deflection;    ///< (n) width-averaged zeta(x; pressure), m, at Truth::x
   Array1 compliance{};  ///< (n) d zeta / d pressure, m/Pa, > 0 on a stable branch; empty: unknown
+  SnapTruth snaps{};    ///< since the level before; the first, since rest
 };
 
 /// What a measurement should have found.

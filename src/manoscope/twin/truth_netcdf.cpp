@@ -63,6 +63,23 @@ std::vector<double> rows(const std::vector<Item>& items, Array1 Item::*curve) {
   return values;
 }
 
+/// What snapped on the way to each level or run: `name`_snaps, _snap_jump and _snap_position.
+template <class Item>
+void write_snaps(Writer& writer, const std::string& name, int dimension, const char* since,
+                 const std::vector<Item>& items) {
+  const auto write = [&](const char* what, const char* units, const char* long_name, auto get) {
+    writer.numbers(name + what, {dimension}, units,
+                   fmt::format("{} since {}", long_name, since).c_str(),
+                   each(items, [&](const Item& item) { return get(item.snaps); }));
+  };
+  write("_snaps", "1", "number of snap-throughs of the wall",
+        [](const SnapTruth& snaps) { return static_cast<double>(snaps.n); });
+  write("_snap_jump", "m", "furthest jump of the width-averaged deflection in a snap-through",
+        [](const SnapTruth& snaps) { return snaps.jump; });
+  write("_snap_position", "m", "where the wall jumped furthest",
+        [](const SnapTruth& snaps) { return snaps.at; });
+}
+
 void write_runs(Writer& writer, const Truth& truth, const std::vector<RunScalars>& scalars, int x,
                 int run) {
   std::vector<std::string> labels;
@@ -91,6 +108,7 @@ void write_runs(Writer& writer, const Truth& truth, const std::vector<RunScalars
          [](const RunScalars& s) { return s.reynolds; });
   scalar("speed_index", "1", "largest flow speed along the channel over that of the wall's waves",
          [](const RunScalars& s) { return s.speed_index; });
+  write_snaps(writer, "run", run, "the run before", truth.runs);
 }
 
 void write_levels(Writer& writer, const Truth& truth, int x, int level) {
@@ -112,6 +130,7 @@ void write_levels(Writer& writer, const Truth& truth, int x, int level) {
                    "derivative of static_deflection with respect to the uniform pressure",
                    rows(truth.levels, &LevelTruth::compliance), "level_pressure");
   }
+  write_snaps(writer, "level", level, "the level before", truth.levels);
 }
 
 /// Whole variables of known shape.
@@ -154,6 +173,17 @@ class Reader {
 
 Array1 row(const std::vector<double>& values, std::size_t index, Index n) {
   return Eigen::Map<const Array1>(values.data() + index * static_cast<std::size_t>(n), n);
+}
+
+/// Snaps into items that have them; a file without them leaves none.
+template <class Item>
+void read_snaps(const Reader& reader, const std::string& name, std::vector<Item>& items) {
+  if (!reader.has((name + "_snaps").c_str())) return;
+  const auto get = [&](const char* what) { return reader.numbers((name + what).c_str(), {name}); };
+  const auto n = get("_snaps"), jump = get("_snap_jump"), at = get("_snap_position");
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    items[i].snaps = {static_cast<int>(n[i]), jump[i], at[i]};
+  }
 }
 
 }  // namespace
@@ -214,8 +244,9 @@ Truth read_truth_netcdf(const std::filesystem::path& path) {
     const auto deflection = reader.numbers("deflection", {"run", "x"});
     for (std::size_t i = 0; i < labels.size(); ++i) {
       truth.runs.push_back(
-          {labels[i], row(pressure, i, truth.x.size()), row(deflection, i, truth.x.size())});
+          {labels[i], row(pressure, i, truth.x.size()), row(deflection, i, truth.x.size()), {}});
     }
+    read_snaps(reader, "run", truth.runs);
   }
   if (reader.has("level_map")) {
     const auto maps = reader.texts("level_map", {"level"});
@@ -232,6 +263,7 @@ Truth read_truth_netcdf(const std::filesystem::path& path) {
         truth.levels[i].compliance = row(compliance, i, truth.x.size());
       }
     }
+    read_snaps(reader, "level", truth.levels);
   }
   return truth;
 }

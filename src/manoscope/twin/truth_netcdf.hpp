@@ -24,7 +24,9 @@ struct TruthHeader {
 /// Dimensions x, run, level. Coordinates x (m), run (label), flow_rate; pressure, deflection (run,
 /// x); level_pressure (true), level_label (as the gauge read it), level_map, static_deflection
 /// and, where every level has it, static_compliance (level, x); inlet_pressure, outlet_pressure,
-/// parasitic_drop, transducer_drop, largest_deflection, reynolds (run); channel_length,
+/// parasitic_drop, transducer_drop, largest_deflection, reynolds, speed_index (run); level_snaps,
+/// level_snap_jump, level_snap_position (level) and the same of runs: snap-throughs of the wall
+/// since the level or run before, how far the furthest jumped, and where; channel_length,
 /// channel_width, channel_height (true). The same content gives the same bytes.
 ///
 /// @param scalars  one a run, in the order of the truth.

@@ -27,6 +27,10 @@ void write(const std::filesystem::path& path, const VirtualExperiment& made) {
   write_truth_netcdf(path, made.truth, made.scalars, made.header);
 }
 
+bool same(const SnapTruth& a, const SnapTruth& b) {
+  return a.n == b.n && a.jump == b.jump && a.at == b.at;
+}
+
 std::string content(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -34,7 +38,9 @@ std::string content(const std::filesystem::path& path) {
 
 TEST(TruthNetcdf, ComesBackBitForBit) {
   const test_support::TemporaryFolder folder;
-  const VirtualExperiment made = tiny();
+  VirtualExperiment made = tiny();
+  made.truth.levels[5].snaps = {3, -1.25e-6, 4.5e-3};
+  made.truth.runs[1].snaps = {1, 2.5e-6, 7.75e-3};
   write(folder.path() / "truth.nc", made);
   const Truth read = read_truth(folder.path());
   EXPECT_TRUE((read.x == made.truth.x).all());
@@ -44,10 +50,12 @@ TEST(TruthNetcdf, ComesBackBitForBit) {
     EXPECT_EQ(read.runs[i].run, made.truth.runs[i].run);
     EXPECT_TRUE((read.runs[i].pressure == made.truth.runs[i].pressure).all());
     EXPECT_TRUE((read.runs[i].deflection == made.truth.runs[i].deflection).all());
+    EXPECT_TRUE(same(read.runs[i].snaps, made.truth.runs[i].snaps)) << i;
   }
   for (std::size_t i = 0; i < 17; ++i) {
     EXPECT_EQ(read.levels[i].map, made.truth.levels[i].map);
     EXPECT_EQ(read.levels[i].label, made.truth.levels[i].label);
+    EXPECT_TRUE(same(read.levels[i].snaps, made.truth.levels[i].snaps)) << i;
     EXPECT_EQ(read.levels[i].pressure, made.truth.levels[i].pressure);
     EXPECT_TRUE((read.levels[i].deflection == made.truth.levels[i].deflection).all());
     ASSERT_EQ(read.levels[i].compliance.size(), read.x.size());

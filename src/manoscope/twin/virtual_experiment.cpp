@@ -63,6 +63,20 @@ RunScalars run_scalars(const Scenario& scenario, FlowRate flow_rate, const Coupl
   return run;
 }
 
+/// What snapped on the way from one state of a wall to a later one.
+SnapTruth snaps_between(const WallAtRest& before, const WallAtRest& now) {
+  SnapTruth found;
+  for (std::size_t i = before.snaps.size(); i < now.snaps.size(); ++i) {
+    const WallSnap& snap = now.snaps[i];
+    ++found.n;
+    if (std::abs(snap.jump) > std::abs(found.jump)) {
+      found.jump = snap.jump;
+      found.at = snap.at;
+    }
+  }
+  return found;
+}
+
 /// What the camera is to see, and the name it goes by.
 struct Scene {
   WallShape shape;
@@ -87,7 +101,9 @@ class Walls {
     CoupledFlow now = still(rest_, Pressure{});
     for (LevelTruth& level : experiment_.truth.levels) {
       monitor_.checkpoint();
-      now = still(now.wall, level.pressure);
+      CoupledFlow next = still(now.wall, level.pressure);
+      level.snaps = snaps_between(now.wall, next.wall);
+      now = std::move(next);
       level.deflection = now.wall.deflection(experiment_.truth.x);
       Array1 compliance = now.wall.compliance(experiment_.truth.x);
       if (compliance.isFinite().all()) level.compliance = std::move(compliance);
@@ -104,9 +120,12 @@ class Walls {
     for (std::size_t run = 0; run < scenario_.flow_rates.size(); ++run) {
       monitor_.checkpoint();
       const FlowRate flow_rate = scenario_.flow_rates[run];
-      now = flowing(now, flow_rate);
+      CoupledFlow next = flowing(now, flow_rate);
+      const SnapTruth snaps = snaps_between(now.wall, next.wall);
+      now = std::move(next);
       const Array1& x = experiment_.truth.x;
-      experiment_.truth.runs[run] = {run_label(flow_rate), now.pressure(x), now.wall.deflection(x)};
+      experiment_.truth.runs[run] = {run_label(flow_rate), now.pressure(x), now.wall.deflection(x),
+                                     snaps};
       const double noise = RandomStream(seed_, "transducer noise", run).normal();
       experiment_.scalars[run] = run_scalars(scenario_, flow_rate, now, noise);
       WallShape shape = now.wall.shape;

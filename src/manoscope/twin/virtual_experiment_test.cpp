@@ -4,6 +4,8 @@
 
 #include <atomic>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/flow/channel_resistance.hpp"
@@ -117,6 +119,165 @@ TEST(VirtualExperiment, GaugeGainAndZeroAreCommonToAllLevels) {
     EXPECT_NEAR(level.label.si(), gain * level.pressure.si() + zero, 1e-9);  // round-off of 50 kPa
   }
   EXPECT_EQ(experiment.truth.levels.front().label.si(), 0.0);
+}
+
+/// Sum of squares over many draws, against a variance.
+class Scatter {
+ public:
+  void add(double error) {
+    sum_ += error;
+    squares_ += error * error;
+    ++n_;
+  }
+  /// Five standard errors of the mean and of the variance of n normal numbers.
+  void expect(double sigma, const char* what) const {
+    EXPECT_NEAR(sum_ / n_ / sigma, 0.0, 5.0 / std::sqrt(n_)) << what;
+    EXPECT_NEAR(squares_ / n_ / (sigma * sigma), 1.0, 5.0 * std::sqrt(2.0 / n_)) << what;
+  }
+
+ private:
+  double sum_ = 0.0, squares_ = 0.0;
+  int n_ = 0;
+};
+
+/// Nearly rigid, seen by few pixels: gauge and stated height are looked at, hundreds of times.
+Scenario bare() {
+  Scenario scenario = tiny().without_errors();
+  scenario.camera.n_along = scenario.camera.n_across = 8;
+  scenario.levels = {1.0 * kPa, 50.0 * kPa};
+  scenario.flow_rates = {5.0 * mL_per_min, 7.0 * mL_per_min};
+  scenario.wall.thickness = 1.0 * mm;
+  scenario.wall.prestress = 1.0 * GPa;
+  scenario.wall.preload = {};
+  scenario.solver.steps = 20;
+  return scenario;
+}
+
+/// The gap that the experiment states, m.
+double stated_height(const VirtualExperiment& experiment) {
+  const std::string& text = experiment.experiment_toml;
+  const std::string key = "\nheight = \"";
+  return 1e-6 * std::stod(text.substr(text.find(key) + key.size()));
+}
+
+TEST(VirtualExperiment, EachErrorOfGaugeAndHeightHasItsStatedScale) {
+  Scatter gain, zero, noise, transducer, height;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto made = [&](auto change) {
+      Scenario scenario = bare();
+      change(scenario);
+      return make_virtual_experiment(scenario, seed, 1);
+    };
+    const auto label_error = [](const VirtualExperiment& experiment, std::size_t i) {
+      const LevelTruth& level = experiment.truth.levels[i];
+      return (level.label - level.pressure).si();
+    };
+    const auto only_levels = [](Scenario& scenario) { scenario.flow_rates.clear(); };
+    const auto with_gain = made([&](Scenario& s) {
+      only_levels(s);
+      s.gauge.gain_uncertainty = 0.01;
+    });
+    gain.add(label_error(with_gain, 1) / 50e3);
+    EXPECT_NEAR(label_error(with_gain, 0) * 50.0, label_error(with_gain, 1), 1e-6);
+    const auto with_zero = made([&](Scenario& s) {
+      only_levels(s);
+      s.gauge.zero_uncertainty = 5.0 * Pa;
+    });
+    zero.add(label_error(with_zero, 0));
+    EXPECT_NEAR(label_error(with_zero, 0), label_error(with_zero, 1), 1e-9);
+    const auto with_noise = made([&](Scenario& s) {
+      only_levels(s);
+      s.gauge.noise = 8.0 * Pa;
+    });
+    noise.add(label_error(with_noise, 0));
+    noise.add(label_error(with_noise, 1));
+    const auto with_height = made([&](Scenario& s) {
+      only_levels(s);
+      s.height_uncertainty = 0.5 * um;
+    });
+    height.add(stated_height(with_height) - 175e-6);
+  }
+  gain.expect(0.01, "gain");
+  zero.expect(5.0, "zero");
+  noise.expect(8.0, "label noise");
+  height.expect(0.5e-6, "stated height");  // printed to 0.01 um
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    Scenario scenario = bare();
+    scenario.levels = {Pressure{}};
+    scenario.gauge.transducer_noise = 12.0 * Pa;
+    for (const RunScalars& run : make_virtual_experiment(scenario, seed, 1).scalars) {
+      transducer.add((run.transducer_reading - run.total_drop()).si());
+    }
+  }
+  transducer.expect(12.0, "transducer noise");
+}
+
+TEST(VirtualExperiment, EachErrorOfGaugeAndHeightDrawsTheSameAloneAsInCompany) {
+  Scenario all = bare();
+  all.gauge = {8.0 * Pa, 0.01, 5.0 * Pa, 12.0 * Pa};
+  all.height_uncertainty = 0.5 * um;
+  all.camera.noise = 20.0 * nm;
+  all.pump.pulsation = 0.01;
+  const std::uint64_t seed = 5;
+  const VirtualExperiment company = make_virtual_experiment(all, seed);
+  std::vector<double> labels(all.levels.size(), 0.0);
+  const auto alone = [&](auto switch_on) {
+    Scenario scenario = bare();
+    switch_on(scenario);
+    const VirtualExperiment experiment = make_virtual_experiment(scenario, seed);
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      labels[i] += (experiment.truth.levels[i].label - experiment.truth.levels[i].pressure).si();
+    }
+    return experiment;
+  };
+  alone([&](Scenario& s) { s.gauge.noise = all.gauge.noise; });
+  alone([&](Scenario& s) { s.gauge.gain_uncertainty = all.gauge.gain_uncertainty; });
+  alone([&](Scenario& s) { s.gauge.zero_uncertainty = all.gauge.zero_uncertainty; });
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const LevelTruth& level = company.truth.levels[i];
+    // The three add up to what they do together: round-off of 50 kPa.
+    EXPECT_NEAR((level.label - level.pressure).si(), labels[i], 1e-9);
+    EXPECT_GT(std::abs(labels[i]), 1e-3);
+  }
+  const VirtualExperiment transducer =
+      alone([&](Scenario& s) { s.gauge.transducer_noise = all.gauge.transducer_noise; });
+  for (std::size_t i = 0; i < transducer.scalars.size(); ++i) {
+    EXPECT_EQ(transducer.scalars[i].transducer_reading, company.scalars[i].transducer_reading);
+    EXPECT_NE(transducer.scalars[i].transducer_reading, transducer.scalars[i].total_drop());
+  }
+  const VirtualExperiment height =
+      alone([&](Scenario& s) { s.height_uncertainty = all.height_uncertainty; });
+  EXPECT_EQ(stated_height(height), stated_height(company));
+  EXPECT_NE(stated_height(height), 175e-6);
+}
+
+TEST(VirtualExperiment, TellsOfEverySnapThroughOfItsWall) {
+  // A short nitride wall, compressed to three times what buckles it, bowed in a little.
+  Scenario scenario = bare();
+  scenario.wall_law = WallLaw::foppl_von_karman;
+  scenario.channel.length = scenario.wall.length = 3.0 * mm;
+  scenario.wall.thickness = 1.0 * um;
+  scenario.wall.preload = {};
+  scenario.wall.prestress = -1.6 * MPa;
+  scenario.wall.initial_shape = {-0.05 * um, 0.1};
+  scenario.wall_grid = {12, 4};
+  scenario.solver.steps = 80;
+  scenario.levels = {Pressure{}, 0.5 * Pa, 160.0 * Pa, 1.0 * kPa};
+  scenario.outlet = {300.0 * Pa, 0.0};
+  const VirtualExperiment experiment = make_virtual_experiment(scenario, 1);
+  const std::vector<LevelTruth>& levels = experiment.truth.levels;
+  for (const std::size_t quiet : {0u, 1u, 3u}) {
+    EXPECT_EQ(levels[quiet].snaps.n, 0) << quiet;
+    EXPECT_EQ(levels[quiet].snaps.jump, 0.0) << quiet;
+  }
+  EXPECT_EQ(levels[2].snaps.n, 1);
+  EXPECT_GT(levels[2].snaps.jump, 0.1e-6);
+  EXPECT_LT(levels[2].snaps.jump,
+            levels[2].deflection.maxCoeff() - levels[1].deflection.minCoeff());
+  EXPECT_NEAR(levels[2].snaps.at, 1.5e-3, 0.6e-3);
+  // Flow lifts the wall from rest, once.
+  EXPECT_EQ(experiment.truth.runs[0].snaps.n, 1);
+  EXPECT_EQ(experiment.truth.runs[1].snaps.n, 0);
 }
 
 TEST(VirtualExperiment, ScalarsAreThoseOfTheirRuns) {

@@ -1,5 +1,6 @@
 #include "manoscope/twin/wall_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -68,6 +69,16 @@ WallAtRest plate_at_rest(const Plate& plate, wall::WallState state, wall::WallLo
   return made;
 }
 
+/// Where and how far the wall jumps at the end of a branch.
+WallSnap snap_of(const wall::BranchEnd& end, Length length) {
+  constexpr Index kStations = 400;
+  const Array1 x = Array1::LinSpaced(kStations + 1, 0.0, length.si());
+  const Array1 jump = end.after.average_deflection(x) - end.before.average_deflection(x);
+  Index at = 0;
+  jump.abs().maxCoeff(&at);
+  return {x(at), jump(at)};
+}
+
 }  // namespace
 
 WallShape parabolic_shape(Length width, std::function<double(double)> deflection) {
@@ -104,7 +115,12 @@ WallModel plate_model(const wall::ClampedWall& wall, const wall::FopplVonKarmanO
     const auto& before = *std::any_cast<const std::shared_ptr<const LoadedPlate>&>(from.memory);
     auto load = wall::WallLoad::along(x, p);
     auto reached = wall::follow_load(*plate, before.state, before.load, load);
-    return plate_at_rest(plate, std::move(reached.state), std::move(load));
+    WallAtRest made = plate_at_rest(plate, std::move(reached.state), std::move(load));
+    made.snaps = from.snaps;
+    for (const wall::BranchEnd& end : reached.ends) {
+      made.snaps.push_back(snap_of(end, plate->wall().length));
+    }
+    return made;
   };
   return model;
 }

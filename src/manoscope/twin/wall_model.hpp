@@ -3,6 +3,7 @@
 #include <any>
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/core/monitor.hpp"
@@ -16,6 +17,12 @@ namespace manoscope::twin {
 /// Deflection zeta(x, z) of a wall, m, outward; z from the centre line; 0 outside the channel.
 using WallShape = std::function<double(double x, double z)>;
 
+/// A jump of a wall from the end of one branch of states to another.
+struct WallSnap {
+  double at = 0.0;    ///< where the width-averaged zeta jumps furthest, m
+  double jump = 0.0;  ///< by how much, m; outward positive
+};
+
 /// A wall at rest under some pressure, and what it answers when asked.
 struct WallAtRest {
   WallShape shape;
@@ -27,6 +34,8 @@ struct WallAtRest {
   /// d zeta/dp under a pressure that rises everywhere alike: (n) m -> (n) m/Pa; infinite where a
   /// membrane without prestress is flat.
   std::function<Array1(const Array1& x)> compliance;
+  /// Every jump on the way here from WallModel::rest, in the order met.
+  std::vector<WallSnap> snaps;
   std::any memory;  ///< for the model that made it
 };
 
@@ -40,7 +49,8 @@ struct WallModel {
   std::function<WallAtRest()> rest;
   /// The wall after its pressure has slowly changed, in proportion, from that of an earlier state
   /// to p(x): (n) m ascending, (n) Pa; linear between the stations, constant beyond, uniform over
-  /// z. A wall with several states stays on its branch until that ends.
+  /// z. A wall with several states stays on its branch until that ends, snaps through, and says so
+  /// in WallAtRest::snaps.
   std::function<WallAtRest(const WallAtRest& from, const Array1& x, const Array1& p)> load;
 };
 

@@ -92,7 +92,15 @@ FollowedLoad follow(const FopplVonKarman& wall, const WallState& start, const Wa
       now = *next;
     } else {
       const WallState after = wall.equilibrium(way.load(reached), now.state);
-      made.ends.push_back({share, step, now.state, after});
+      // Just before a fold the branch is too steep for the finest step: that step and the jump
+      // which follows at once are one end.
+      if (!made.ends.empty() && share <= made.ends.back().share + made.ends.back().uncertainty) {
+        BranchEnd& end = made.ends.back();
+        end.uncertainty = share + step - end.share;
+        end.after = after;
+      } else {
+        made.ends.push_back({share, step, now.state, after});
+      }
       now = way.point_at(after);
     }
     share = reached;

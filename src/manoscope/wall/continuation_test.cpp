@@ -102,6 +102,39 @@ TEST(FollowPressure, OfABuckledWallSnapsThroughUpwardAndBackAtAnotherPressure) {
   EXPECT_LT(std::abs(on.snaps.front().pressure.si()), snap.pressure.si());
 }
 
+TEST(FollowPressure, EndsTheBranchOfASlightlyBuckledSquareWhereKoitersCubicEnds) {
+  // Just beyond its buckling load a flat wall follows its first mode alone, A^3 - A0^2 A = const p
+  // (Koiter 1945): the branch bowed against p ends at p = 2/(3 sqrt 3) A0/c, with A0 the crest at
+  // rest and c the compliance of the flat wall as far below the buckling load as this one is above
+  // it. Both are found without following anything; the cubic is exact as that distance vanishes.
+  ClampedWall flat{1.7 * mm, 1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23};
+  const Pressure critical = FopplVonKarman(flat, coarse()).critical_prestress();
+  double before = 1.0;
+  for (const double beyond : {0.08, 0.04, 0.02}) {
+    flat.prestress = (1.0 - beyond) * critical;
+    const FopplVonKarman below(flat, coarse());
+    const double little = 1e-4;  // Pa: stretching takes 1e-6 of the deflection
+    const double compliance = below.equilibrium(load(little)).deflection(0.85e-3, 0.0) / little;
+    flat.prestress = (1.0 + beyond) * critical;
+    const FopplVonKarman wall(flat, coarse());
+    // Pushed down and let go.
+    const WallState down = wall.equilibrium(load(0.0), wall.equilibrium(load(-10.0)));
+    const double rest = -down.deflection(0.85e-3, 0.0);
+    ASSERT_GT(rest, 0.0);
+    const double koiter = 2.0 / (3.0 * std::sqrt(3.0)) * rest / compliance;
+    const LoadPath up = follow_pressure(wall, down, Array1::LinSpaced(5, 0.0, 2.0 * koiter));
+    ASSERT_EQ(up.snaps.size(), 1u) << beyond;
+    EXPECT_LT(up.snaps[0].before.volume(), 0.0);
+    EXPECT_GT(up.snaps[0].after.volume(), 0.0);
+    const double off = std::abs(up.snaps[0].pressure.si() / koiter - 1.0);
+    // First order in the distance, with a tenth before it (0.7, 0.4 and 0.2 %); a branch end is
+    // found to 1e-3 of steps of half of the pressure.
+    EXPECT_LT(off, 0.1 * beyond + 5e-4) << beyond;
+    EXPECT_LT(off, 0.6 * before + 5e-4) << beyond;
+    before = off;
+  }
+}
+
 TEST(FollowPressure, EnergyGrowsByThePressureTimesTheVolumeAlongABranch) {
   // dU = p dV: a central difference over +-h has an error of (h/p)^2 times a number of order one.
   const FopplVonKarman wall(buckled(2.0), coarse());

@@ -54,6 +54,7 @@ PlateStrip::PlateStrip(const WallSection& section) : section_(section) {
 
 PlateStrip::Answer PlateStrip::answer(double tension) const {
   const double e = shear_, r = 1.0 / (1.0 + e * tension), r2 = r * r;
+  MANO_ASSERT(r * tension > -kPi2);
   const StripBending bent = StripBending::at(r * tension);
   Answer made{};
   made.crest = r2 * bent.f + 0.5 * r * e;

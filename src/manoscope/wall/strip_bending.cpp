@@ -69,7 +69,7 @@ double excess(double x) {
 }  // namespace
 
 StripBending StripBending::at(double q) {
-  MANO_ASSERT(q > -kPi2);
+  MANO_ASSERT(q > -4.0 * kPi2 && q != -kPi2);
   if (std::abs(q) < 2.0) return series(q);
   StripBending made{};
   const double u = std::sqrt(std::abs(q));

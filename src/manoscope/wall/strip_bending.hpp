@@ -14,7 +14,8 @@ namespace manoscope::wall {
 ///
 /// the last because q is the force that works on the stretch. For q < 0 (compression) the
 /// hyperbolic functions become circular ones; all have a pole at q = -pi^2, the buckling load of
-/// the clamped strip. At q = 0: f = 1/24, g = 1/45, h = 1/945.
+/// the clamped strip, below which its crest lies against the load (f < 0), and the next at -4 pi^2.
+/// At q = 0: f = 1/24, g = 1/45, h = 1/945.
 ///
 /// Source: Timoshenko & Woinowsky-Krieger, Theory of Plates and Shells, ch. 1 (bending to a
 /// cylindrical surface, built-in edges; their u is u here); g and h follow by integration.
@@ -23,7 +24,8 @@ struct StripBending {
   double g;           ///< average; dg/dq = -2 h
   double h, h_slope;  ///< stretch, d/dq
 
-  /// Relative accuracy 1e-12 for -9.8 <= q <= 1e12; q > -pi^2.
+  /// Relative accuracy 5e-12 for -9.8 <= q <= 1e12 and between the poles, -39 <= q <= -10.
+  /// @param q  > -4 pi^2, not -pi^2.
   static StripBending at(double q);
 };
 

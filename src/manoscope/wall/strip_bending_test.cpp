@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,14 +31,22 @@ Sums partial_fractions(double q) {
 }
 
 TEST(StripBending, IsItsPartialFractionsUnderTensionAndCompression) {
-  for (const double q : {-9.8, -9.0, -5.0, -2.001, -1.999, -0.3, 0.0, 1e-9, 0.7, 1.999, 2.001, 30.0,
-                         399.0, 401.0, 1e4}) {
+  for (const double q : {-39.0, -28.0, -20.19, -12.0, -10.0, -9.8,  -9.0, -5.0,  -2.001, -1.999,
+                         -0.3,  0.0,   1e-9,   0.7,   1.999, 2.001, 30.0, 399.0, 401.0,  1e4}) {
     const StripBending found = StripBending::at(q);
     const Sums sums = partial_fractions(q);
     // Round-off of the closed forms, largest beside q = 2; the sums are good to 1e-15.
     EXPECT_NEAR(found.f / sums.f, 1.0, 5e-12) << q;
     EXPECT_NEAR(found.g / sums.g, 1.0, 5e-12) << q;
     EXPECT_NEAR(found.h / sums.h, 1.0, 5e-12) << q;
+  }
+}
+
+TEST(StripBending, BowsAgainstItsLoadBelowTheBucklingLoad) {
+  for (const double q : {-30.0, -20.0, -10.0}) {
+    EXPECT_LT(StripBending::at(q).f, 0.0) << q;
+    EXPECT_LT(StripBending::at(q).g, 0.0) << q;
+    EXPECT_GT(StripBending::at(q).h, 0.0) << q;
   }
 }
 
@@ -49,8 +58,10 @@ TEST(StripBending, HasTheTextbookValuesWithoutTension) {
 }
 
 TEST(StripBending, SlopesAreDerivatives) {
-  for (const double q : {-9.5, -4.0, -1.0, 0.2, 1.5, 3.0, 100.0, 390.0, 410.0, 1e5}) {
-    const double d = 1e-4 * (std::abs(q + kPi2));
+  for (const double q :
+       {-38.0, -25.0, -11.0, -9.5, -4.0, -1.0, 0.2, 1.5, 3.0, 100.0, 390.0, 410.0, 1e5}) {
+    // Of the distance from the nearest pole.
+    const double d = 1e-4 * std::min(std::abs(q + kPi2), std::abs(q + 4.0 * kPi2));
     const StripBending at = StripBending::at(q), up = StripBending::at(q + d),
                        down = StripBending::at(q - d);
     // Central differences: truncation (1e-4)^2 times a few, round-off 1e-13/1e-4.
