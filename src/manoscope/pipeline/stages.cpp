@@ -163,8 +163,11 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   result.hydrostatic.assign(std::make_move_iterator(reduced.begin()),
                             std::make_move_iterator(split));
   result.flow.assign(std::make_move_iterator(split), std::make_move_iterator(reduced.end()));
-  result.offset =
-      maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width, options);
+  // A place that was found to half a pixel is made finer by the ends of all walls; one that was
+  // given is the user's, and doubted if they contradict it.
+  const bool place_was_found = !experiment.channel.origin;
+  result.offset = maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width,
+                                      options, place_was_found);
   return result;
 }
 

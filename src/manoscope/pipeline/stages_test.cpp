@@ -179,6 +179,42 @@ TEST(ReduceMaps, RefuseMapsOfAnotherSizeThatNameNoWindow) {
   EXPECT_THROW(static_cast<void>(reduce(experiment)), InputError);
 }
 
+/// Middle between the two places at which a profile passes half of its greatest deflection.
+double middle_of(const Profile& profile) {
+  const double half = 0.5 * profile.zeta.maxCoeff();
+  double first = 0.0, last = 0.0;
+  for (Index ix = 0; ix + 1 < profile.x.size(); ++ix) {
+    const double here = profile.zeta[ix] - half, next = profile.zeta[ix + 1] - half;
+    if (here * next > 0.0 || here == next) continue;
+    const double x = profile.x[ix] + (profile.x[ix + 1] - profile.x[ix]) * here / (here - next);
+    if (first == 0.0) first = x;
+    last = x;
+  }
+  return 0.5 * (first + last);
+}
+
+TEST(ReduceMaps, CountXFromTheWallsOwnEndsWhereThePlaceIsFound) {
+  twin::Scenario scenario = small_scenario();
+  scenario.camera.n_along = 640;  // coarser ones show too little of the wall's ends
+  TestExperiment test(scenario);
+  test.leave_out_place();
+  const auto experiment = test.read();
+  const ChannelFrame frame = place_channel(experiment).frame;
+  for (const double pixels : {-0.4, 0.0, 0.4}) {
+    // As if other two maps had been the ones that the place is found from.
+    ChannelFrame moved = frame;
+    moved.origin_x += pixels * 25.5 * um;
+    const ReducedExperiment reduced = reduce_maps(experiment, moved, {}, 1, {});
+    ASSERT_TRUE(reduced.offset);
+    EXPECT_EQ(reduced.offset->shift, Length{});
+    // Uniform pressure: the same to both ends. Noise, and a straight line over a pixel of a bent
+    // flank, miss the half by a fifth of a pixel; the frames lie 0.4 pixels apart.
+    for (const std::size_t k : {8U, 12U, 16U}) {
+      EXPECT_NEAR(middle_of(reduced.hydrostatic[k].profile), 7.75e-3, 5e-6) << pixels << ' ' << k;
+    }
+  }
+}
+
 TEST(PlaceChannel, IsFoundWithinAPixelOfTheTruth) {
   twin::Scenario scenario = small_scenario();
   scenario.camera.flow = FlowDirection::minus_rows;
