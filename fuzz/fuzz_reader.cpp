@@ -28,7 +28,10 @@ class InputFile {
   InputFile() : descriptor_(::memfd_create("map", 0)) {
     if (descriptor_ < 0) stop("no file in memory");
   }
-  std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+  /// Under the number of this process: the one that reads HDF5 opens it, too.
+  std::filesystem::path path() const {
+    return fmt::format("/proc/{}/fd/{}", ::getpid(), descriptor_);
+  }
   void fill(const std::uint8_t* bytes, std::size_t n_bytes) const {
     const bool done = ::ftruncate(descriptor_, 0) == 0 &&
                       ::pwrite(descriptor_, bytes, n_bytes, 0) == static_cast<ssize_t>(n_bytes);
@@ -44,7 +47,8 @@ const io::Reader* chosen = nullptr;
 /// Of the honest size of a refused file to its bytes: 8 where a byte may be a pixel; where bytes
 /// are packed nobody knows how many a damaged file holds, and zlib packs up to 1032 into one.
 double refused_ratio() {
-  for (const char* packed : {"digital-surf", "keyence-vk", "plux", "tiff", "x3p"}) {
+  for (const char* packed : {"digital-surf", "hdf5", "keyence-vk", "matlab", "netcdf", "plux",
+                             "tiff", "x3p", "zygo-datx"}) {
     if (chosen->name() == packed) return 8.0 * 1032.0;
   }
   return 8.0;

@@ -1,10 +1,12 @@
 #include "fuzz/seeds.hpp"
 
 #include <zip.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "fuzz/hdf5_seeds.hpp"
 #include "fuzz/trial.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/test_bytes.hpp"
@@ -58,16 +60,73 @@ Parts unpacked(const std::string& bytes) {
   return parts;
 }
 
+/// A zlib stream as a writer of the format would make it.
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string zipped(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(zipped.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6) != Z_OK) {
+    throw InternalError("zlib packs nothing");
+  }
+  zipped.resize(size);
+  return zipped;
+}
+
+/// Content of all parts but the first, each as a stream of zlib with its lengths before it, behind
+/// the first part: a packed Digital Surf object, whose head is the first part.
+std::string packed_surf(const Parts& parts) {
+  std::string lengths, streams;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::string zipped = deflated(parts[i].second);
+    lengths += own::little(parts[i].second.size(), 4) + own::little(zipped.size(), 4);
+    streams += zipped;
+  }
+  return parts[0].second + own::little(parts.size() - 1, 4) + lengths + streams;
+}
+
+/// A MATLAB file: its head, and each other part as a packed element.
+std::string packed_matlab(const Parts& parts) {
+  constexpr std::uint64_t kCompressed = 15;
+  std::string bytes = parts[0].second;
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::string zipped = deflated(parts[i].second);
+    bytes += own::little(kCompressed, 4) + own::little(zipped.size(), 4) + zipped;
+  }
+  return bytes;
+}
+
 class Collection {
  public:
   explicit Collection(std::filesystem::path scratch) : scratch_(std::move(scratch)) {}
 
   void add(std::string_view reader, const std::string& name, const std::string& bytes) {
-    seeds_.push_back({&reader_named(reader), name, bytes, {}, {}});
+    Seed seed;
+    seed.reader = &reader_named(reader);
+    seed.name = name;
+    seed.bytes = bytes;
+    seed.by_worker = is_hdf5(bytes);
+    seeds_.push_back(std::move(seed));
   }
   void add_archive(std::string_view reader, const std::string& name, const Parts& parts,
                    const std::string& prefix = {}) {
-    seeds_.push_back({&reader_named(reader), name, prefix + own::stored_zip(parts), parts, prefix});
+    Seed seed;
+    seed.reader = &reader_named(reader);
+    seed.name = name;
+    seed.parts = parts;
+    seed.prefix = prefix;
+    seed.bytes = seed.with(parts);
+    seeds_.push_back(std::move(seed));
+  }
+  /// A file that `pack` makes of its parts.
+  void add_packed(std::string_view reader, const std::string& name, const Parts& parts,
+                  std::string (*pack)(const Parts&)) {
+    Seed seed;
+    seed.reader = &reader_named(reader);
+    seed.name = name;
+    seed.parts = parts;
+    seed.pack = pack;
+    seed.bytes = seed.with(parts);
+    seeds_.push_back(std::move(seed));
   }
   /// A file of our own writer for that extension.
   void add_written(std::string_view reader, const std::string& name) {
@@ -90,11 +149,13 @@ class Collection {
       const std::string extension = path.extension().string();
       if (extension == ".md" || path.filename() == "expected.csv") continue;
       const std::string bytes = own::bytes_of(path);
-      if (is_left_out(bytes)) continue;
       const std::string name = path.filename().string();
+      const std::size_t n_before = seeds_.size();
       const io::Reader& reader = io::find_reader(path);
       add(reader.name(), name, bytes);
       if (bytes.starts_with("PK")) add_archive(reader.name(), name, unpacked(bytes));
+      // Some are there to be refused.
+      for (std::size_t i = n_before; i < seeds_.size(); ++i) seeds_[i].made_here = false;
     }
   }
 
@@ -147,7 +208,7 @@ void add_netcdf(Collection& seeds) {
                      {{"scale_factor", 2.0}, {"_FillValue", -1.0}},
                      own::ClassicNetcdf::doubles(heights)}};
   for (const int version : {1, 2, 5}) seeds.add("netcdf", "map.nc", file.bytes(version));
-  if (!kWithoutHdf5) seeds.add_written("netcdf", "map4.nc");
+  seeds.add_written("netcdf", "map4.nc");
 }
 
 void add_archives(Collection& seeds) {
@@ -197,6 +258,25 @@ void add_tiff(Collection& seeds) {
   packed.data = std::string(1, '\x17') + own::tiff_floats(2.0F);
   packed.nx = 6;
   packed.ny = 1;
+  own::TiffPage lzw = packed, deflate = packed, wide = page;
+  lzw.compression = 5;
+  lzw.data = own::literal_lzw(own::tiff_floats(2.0F));
+  deflate.compression = 8;
+  deflate.data = deflated(own::tiff_floats(2.0F));
+  wide.bits = 64;
+  wide.data += wide.data;
+  own::TiffPage packed_tiles = own::tiled_page(20, 18);
+  packed_tiles.compression = 8;
+  for (std::string& tile : packed_tiles.tiles) tile = deflated(tile);
+  own::TiffPage stack = page;
+  stack.description += "images=3\n";
+  stack.data = own::tiff_floats(1.0F) + own::tiff_floats(2.0F) + own::tiff_floats(3.0F);
+  for (const own::TiffPage& each : {lzw, deflate, wide, own::tiled_page(20, 18), packed_tiles}) {
+    seeds.add("tiff", "map.tif", own::tiff_file({each}));
+    seeds.add("tiff", "map.tif", own::tiff_file({each}, true, true));
+  }
+  seeds.add("tiff", "map.tif", own::tiff_file({page}, false, true));
+  seeds.add("tiff", "map.tif", own::tiff_file({stack}));
   integers.bits = 16;
   integers.format = 2;
   integers.data = std::string(12, '\3');
@@ -258,7 +338,36 @@ void add_binaries(Collection& seeds) {
                           gwy_component("/0/meta", 'o', meta)));
 }
 
+void add_surf_streams(Collection& seeds) {
+  own::SurfObject object;
+  object.compressed = true;
+  const std::string bytes = object.bytes();
+  constexpr std::size_t kHead = 512 + 12;  // header, comment and private bytes
+  std::string points;
+  for (const int point : object.points) {
+    points += own::little(static_cast<std::uint64_t>(point), 4);
+  }
+  seeds.add_packed("digital-surf", "map.sur",
+                   {{"head", bytes.substr(0, kHead)},
+                    {"points 1", points.substr(0, 10)},
+                    {"points 2", points.substr(10)}},
+                   packed_surf);
+}
+
+void add_matlab_streams(Collection& seeds) {
+  const std::string bytes = own::matlab_file(false);
+  constexpr std::size_t kHead = 128;
+  const Parts parts{
+      {"head", bytes.substr(0, kHead)}, {"z", bytes.substr(kHead)}, {"z", bytes.substr(kHead)}};
+  seeds.add_packed("matlab", "map.mat", parts, packed_matlab);
+  seeds.add("matlab", "map.mat", packed_matlab(parts));
+}
+
 }  // namespace
+
+std::string Seed::with(const std::vector<std::pair<std::string, std::string>>& other_parts) const {
+  return pack ? pack(other_parts) : prefix + own::stored_zip(other_parts);
+}
 
 std::vector<Seed> all_seeds(const std::filesystem::path& scratch,
                             const std::filesystem::path& maps) {
@@ -268,11 +377,15 @@ std::vector<Seed> all_seeds(const std::filesystem::path& scratch,
   add_archives(seeds);
   add_tiff(seeds);
   add_binaries(seeds);
+  add_surf_streams(seeds);
   seeds.add("matlab", "map.mat", own::matlab_file(false));
   seeds.add("matlab", "map.mat", own::matlab_file(true, 3));
+  add_matlab_streams(seeds);
+  for (const auto& [reader, path] : write_hdf5_seeds(scratch)) {
+    seeds.add(reader, path.filename().string(), own::bytes_of(path));
+  }
   seeds.add_folder(maps);
   for (const io::Reader* reader : io::readers()) {
-    if (kWithoutHdf5 && (reader->name() == "hdf5" || reader->name() == "zygo-datx")) continue;
     const bool has_one = std::any_of(seeds.seeds_.begin(), seeds.seeds_.end(),
                                      [&](const Seed& seed) { return seed.reader == reader; });
     if (!has_one) throw InternalError("no seed for the reader " + std::string(reader->name()));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <stdexcept>
 #include <vector>
@@ -93,6 +94,34 @@ TEST(Trial, MemoryBeyondFourTimesTheHonestSizeIsAFault) {
   EXPECT_TRUE(contains(taking(300000), "allowed are 262184 (4 x 10 + 262144)"));
   // What is given back as a map is honest: 8 bytes a pixel.
   EXPECT_EQ(fault_of([](const auto&) { return one_channel(1000, 1000); }), "");
+}
+
+TEST(Trial, AProcessOfHdf5IsHeldToItsLimits) {
+  using io::testing::contains;
+  const io::WorkerLimits limits = io::worker_limits(1000);
+  EXPECT_EQ(worker_fault(10.9, limits.memory_bytes, limits), "");
+  EXPECT_TRUE(contains(worker_fault(11.1, 0, limits), "compute for 11.1 s, allowed are 10 s"));
+  EXPECT_TRUE(contains(worker_fault(0.0, limits.memory_bytes + 1, limits), "1073757825 bytes"));
+}
+
+TEST(Trial, ACrashOfTheProcessOfHdf5IsNoFaultOfOurs) {
+  const io::testing::TestFolder folder;
+  const auto script = folder.write("reader.sh", "#!/bin/sh\nkill -SEGV $$\n");
+  std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+  ::setenv("MANOSCOPE_HDF5_READER", script.c_str(), 1);
+  const auto path = folder.write("a.h5", "\x89HDF\r\n\x1a\n and nothing else");
+  const Trial trial = read_in_every_way(path, io::find_reader(path), 1.0);
+  ::unsetenv("MANOSCOPE_HDF5_READER");
+  EXPECT_EQ(trial.fault, "");
+  EXPECT_FALSE(trial.was_read);
+}
+
+TEST(Trial, FilesOfHdf5AreKnownByTheirSignatureAlsoBehindMatlabsBlock) {
+  const std::string signature = "\x89HDF\r\n\x1a\n";
+  EXPECT_TRUE(is_hdf5(signature));
+  EXPECT_TRUE(is_hdf5(std::string(512, ' ') + signature));
+  EXPECT_FALSE(is_hdf5(std::string(511, ' ') + signature));
+  EXPECT_FALSE(is_hdf5(""));
 }
 
 TEST(Mutation, IsTheSameForTheSameStreamAndAlmostAlwaysDamages) {

@@ -26,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Pa. As for the unchanged experiments: what labels of 10 Pa and maps leave.
+constexpr double kMostRms = 10.0;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Heights of a map, NaN where bad.
@@ -134,15 +136,15 @@ void miscount_fringe(Picture& picture, RandomStream& random) {
   }
 }
 
-/// The form of the frame, the same in every map: 0.3 um along, 0.1 um across.
-void curve(Picture& picture) {
+/// A form of the frame: by default 0.3 um along, 0.1 um across.
+void curve(Picture& picture, double along = 300e-9, double across = -100e-9) {
   const auto place = [](Index i, Index n) {
     return 2.0 * static_cast<double>(i) / static_cast<double>(n - 1) - 1.0;
   };
   for (Index iy = 0; iy < picture.grid.ny; ++iy) {
     for (Index ix = 0; ix < picture.grid.nx; ++ix) {
       const double u = place(ix, picture.grid.nx), v = place(iy, picture.grid.ny);
-      picture.height(iy, ix) += 300e-9 * u * u - 100e-9 * v * v;
+      picture.height(iy, ix) += along * u * u + across * v * v;
     }
   }
 }
@@ -150,56 +152,104 @@ void curve(Picture& picture) {
 /// What happens to one map of the experiment.
 using Change = std::function<Picture(Picture, RandomStream&)>;
 
+/// How much of an experiment is measured.
+enum class Extent {
+  whole,  ///< all levels and runs
+  few     ///< every second level and two runs: for changes that move pixels and alter no height
+};
+
 struct Variation {
   const char* name;
+  const char* wall;
   Change change;
+  Extent extent = Extent::whole;
+  int level_order = 1;
+  double most_silent = 0.0;    ///< share of the stations
+  double most_rms = kMostRms;  ///< Pa
 };
+
+/// The maps have gaps of their own, 7 pixels and more across. Where a picture is turned they take
+/// another shape, and some then exceed the widest gap across the channel that a station may have.
+constexpr double kSilentWhereTurned = 0.02;
+/// Pa. Shifts and turns, a curved frame and damage leave 8, 7 and 6 Pa at most one by one;
+/// together, and where damaged pixels are resampled, twice the root of their squares. The error
+/// bars say 60.
+constexpr double kMostRmsOfAll = 25.0;
 
 constexpr double kAngle = 0.3 * std::numbers::pi / 180.0;
 
+Picture all_at_once(Picture p, RandomStream& r) {
+  curve(p);
+  p = moved(p, r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0), kAngle);
+  miscount_fringe(p, r);
+  damage(p, r);
+  p.height = -p.height.rowwise().reverse().eval();
+  return transposed(cropped(p, 4));
+}
+
 const std::vector<Variation>& variations() {
   static const std::vector<Variation> list{
-      {"EachMapShiftedByUpToThreePixels",
+      {"EachMapShiftedByUpToThreePixels", "S1",
        [](Picture p, RandomStream& r) {
          return moved(p, r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0), 0.0);
        }},
-      {"AllTurnedAndEachByAnAngleOfItsOwn",
+      {"AllTurnedAndEachByAnAngleOfItsOwn", "S1",
        [](Picture p, RandomStream& r) {
          return moved(p, 0.0, 0.0, kAngle + r.uniform(-0.3, 0.3) * kAngle);
-       }},
-      {"MirroredTransposedCroppedAndUpsideDown",
+       },
+       Extent::whole, 1, kSilentWhereTurned},
+      {"Mirrored", "S1",
        [](Picture p, RandomStream&) {
-         p.height = -p.height.rowwise().reverse().eval();
-         return transposed(cropped(p, 4));
-       }},
-      {"WithDropoutsSpikesAndFringePatches",
+         p.height = p.height.rowwise().reverse().eval();
+         return p;
+       },
+       Extent::few},
+      {"UpsideDown", "S1",
+       [](Picture p, RandomStream&) {
+         p.height = -p.height;
+         return p;
+       },
+       Extent::few},
+      {"Transposed", "S1", [](Picture p, RandomStream&) { return transposed(p); }, Extent::few},
+      {"Cropped", "S1", [](Picture p, RandomStream&) { return cropped(p, 4); }, Extent::few},
+      {"WithDropoutsSpikesAndFringePatches", "S1",
        [](Picture p, RandomStream& r) {
          miscount_fringe(p, r);
          damage(p, r);
          return p;
        }},
-      {"OnACurvedFrame",
+      {"OnACurvedFrame", "S1",
        [](Picture p, RandomStream&) {
          curve(p);
          return p;
        }},
-      {"AllAtOnce",
+      {"OnAFrameThatCurvesFromMapToMap", "S1",
        [](Picture p, RandomStream& r) {
-         curve(p);
-         p = moved(p, r.uniform(-3.0, 3.0), r.uniform(-3.0, 3.0), kAngle);
-         miscount_fringe(p, r);
-         damage(p, r);
-         p.height = -p.height.rowwise().reverse().eval();
-         return transposed(cropped(p, 4));
-       }},
+         curve(p, r.uniform(-300e-9, 300e-9), r.uniform(-100e-9, 100e-9));
+         return p;
+       },
+       Extent::whole, 2},
+      {"AllAtOnce", "S1", all_at_once, Extent::whole, 1, kSilentWhereTurned, kMostRmsOfAll},
+      {"AllAtOnce", "S4", all_at_once, Extent::whole, 1, kSilentWhereTurned},
   };
   return list;
 }
 
 class VariedPractice : public ::testing::TestWithParam<std::size_t> {};
 
+/// The lines of a list that stay: its head, and every `step`-th of the others from `first` on.
+std::vector<std::string> kept_lines(const fs::path& list, std::size_t first, std::size_t step) {
+  std::ifstream file(list);
+  std::vector<std::string> lines;
+  std::string line;
+  for (std::size_t i = 0; std::getline(file, line); ++i) {
+    if (i == 0 || (i > first && (i - 1 - first) % step == 0)) lines.push_back(line);
+  }
+  return lines;
+}
+
 /// The experiment with its maps changed, and nothing said of where the channel lies.
-void write_varied(const fs::path& from, const fs::path& to, const Change& change) {
+void write_varied(const fs::path& from, const fs::path& to, const Variation& variation) {
   std::string toml = read_file(from / "experiment.toml");
   for (const char* key : {"origin", "flow =", "outward"}) {
     const auto at = toml.find(std::string("\n") + key);
@@ -207,62 +257,60 @@ void write_varied(const fs::path& from, const fs::path& to, const Change& change
     toml.erase(at, toml.find('\n', at + 1) - at);
   }
   std::ofstream(to / "experiment.toml") << toml;
-  for (const char* list : {"hydrostatic.csv", "flow.csv"}) fs::copy_file(from / list, to / list);
-  std::uint64_t index = 0;
-  std::vector<fs::path> maps;
-  for (const auto& entry : fs::directory_iterator(from)) {
-    if (entry.path().extension() == ".gsf") maps.push_back(entry.path());
+  const bool few = variation.extent == Extent::few;
+  std::vector<std::string> maps;
+  for (const auto& [list, first, step] :
+       {std::tuple{"hydrostatic.csv", std::size_t{0}, std::size_t{few ? 2U : 1U}},
+        std::tuple{"flow.csv", std::size_t{few ? 2U : 0U}, std::size_t{few ? 4U : 1U}}}) {
+    const std::vector<std::string> lines = kept_lines(from / list, first, step);
+    std::ofstream out(to / list);
+    for (const std::string& line : lines) {
+      out << line << '\n';
+      if (&line != &lines.front()) maps.push_back(line.substr(0, line.find(',')));
+    }
   }
   std::sort(maps.begin(), maps.end());
-  for (const fs::path& path : maps) {
+  std::uint64_t index = 0;
+  for (const std::string& name : maps) {
     RandomStream random(43, "variation", index++);
-    const Picture varied = change(picture_of(io::read_height_map(path)), random);
-    io::write_gsf(to / path.filename(), HeightMap(varied.grid, varied.height), "varied");
+    const Picture varied = variation.change(picture_of(io::read_height_map(from / name)), random);
+    io::write_gsf(to / name, HeightMap(varied.grid, varied.height), "varied");
   }
 }
 
-TEST_P(VariedPractice, ReadsTheSamePressureWithinItsErrorBars) {
-  const fs::path folder = fs::path(test_paths::shared) / "data" / "practice" / "S1";
+TEST_P(VariedPractice, ReadsTheTruePressureWithinItsErrorBars) {
+  const Variation& variation = variations()[GetParam()];
+  const fs::path folder = fs::path(test_paths::shared) / "data" / "practice" / variation.wall;
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not on this machine";
-  static const results::Measurement plain =
-      pipeline::measure(experiment::read_experiment(folder), {}, 2);
-  const test_support::TemporaryFolder varied_folder;
-  write_varied(folder, varied_folder.path(), variations()[GetParam()].change);
-  const auto varied = pipeline::measure(experiment::read_experiment(varied_folder.path()), {}, 2);
-
-  const auto judgements = pipeline::judge(varied, twin::read_truth(folder), 1.6 * mm, 13.0 * mm);
+  const test_support::TemporaryFolder varied;
+  write_varied(folder, varied.path(), variation);
+  pipeline::MeasureOptions options;
+  options.reduce.level_order = variation.level_order;
+  const auto measurement =
+      pipeline::measure(experiment::read_experiment(varied.path()), options, 2);
+  const auto judgements =
+      pipeline::judge(measurement, twin::read_truth(folder), 1.6 * mm, 13.0 * mm);
+  ASSERT_EQ(judgements.size(), variation.extent == Extent::few ? 2U : 8U);
+  std::vector<validation::Judgement> readings;
   for (const auto& run : judgements) {
-    // As for the plain experiment: what 10 Pa of noise on each pressure label leaves.
-    EXPECT_LE(run.reading.rms, std::max(20.0, 0.01 * run.true_drop)) << run.run;
+    SCOPED_TRACE(run.run);
+    EXPECT_LE(run.reading.rms, variation.most_rms);
+    const auto n = static_cast<double>(run.reading.n_answered + run.reading.n_silent);
+    EXPECT_GT(n, 600.0);
+    EXPECT_LE(static_cast<double>(run.reading.n_silent), variation.most_silent * n);
+    readings.push_back(run.reading);
   }
-  for (Index r = 0; r < plain.flow_rate.size(); ++r) {
-    Index within = 0, n = 0;
-    for (Index ix = 0; ix < varied.x.size(); ++ix) {
-      const double x = varied.x[ix];
-      if (x < 1.6e-3 || x > 13.0e-3) continue;
-      // The nearest station of the plain reading and the gradient there.
-      Index k = 1;
-      while (k + 2 < plain.x.size() && plain.x[k] < x) ++k;
-      const double share = (x - plain.x[k - 1]) / (plain.x[k] - plain.x[k - 1]);
-      const double expected =
-          (1.0 - share) * plain.pressure(r, k - 1) + share * plain.pressure(r, k);
-      if (std::isnan(expected) || std::isnan(varied.pressure(r, ix))) continue;
-      ++n;
-      // Both were placed and leveled with errors of their own.
-      const double allowed = std::hypot(varied.pressure_upper(r, ix) - varied.pressure(r, ix),
-                                        plain.pressure_upper(r, k) - plain.pressure(r, k));
-      within += std::abs(varied.pressure(r, ix) - expected) <= allowed;
-    }
-    ASSERT_GT(n, 100);
-    // Of two intervals of 95 %.
-    EXPECT_GE(static_cast<double>(within) / static_cast<double>(n), 0.95)
-        << variations()[GetParam()].name << ' ' << plain.run[static_cast<std::size_t>(r)];
-  }
+  const validation::PullSummary pulls = validation::average_pulls(readings);
+  // Runs share labels and maps, so that one experiment's pulls lie together: no wider than the
+  // error bars, and as many of the intervals of 95 % hold the truth.
+  EXPECT_LE(pulls.pull_rms, 1.0);
+  EXPECT_GE(pulls.coverage, 0.95);
 }
 
-INSTANTIATE_TEST_SUITE_P(Mounts, VariedPractice, ::testing::Range<std::size_t>(0, 6),
+INSTANTIATE_TEST_SUITE_P(Mounts, VariedPractice, ::testing::Range<std::size_t>(0, 11),
                          [](const auto& test) {
-                           return std::string(variations()[test.param].name);
+                           const Variation& variation = variations()[test.param];
+                           return std::string(variation.name) + "Of" + variation.wall;
                          });
 
 }  // namespace

@@ -37,6 +37,7 @@ std::vector<report::JudgedRun> judged_runs(const Verdict& verdict) {
     run.coverage_68 = judged.reading.coverage_68;
     run.coverage = judged.reading.coverage;
     if (!verdict.split.runs.empty()) {
+      run.neighbourhood = column("neighbourhood_Pa");
       run.labels = column("label_error_Pa");
       run.maps = column("map_error_Pa");
       run.curve_shape_and_locality = column("curve_shape_and_locality_error_Pa");

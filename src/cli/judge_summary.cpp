@@ -93,6 +93,7 @@ json split_json(const validation::SplitSummary& split) {
   return {{"stations", split.n_split},
           {"left_out", split.n_left_out},
           {"total", part_json(split.total)},
+          {"neighbourhood", part_json(split.neighbourhood)},
           {"labels", part_json(split.labels)},
           {"maps", part_json(split.maps)},
           {"curve_shape", part_json(split.curve_shape)},
@@ -168,19 +169,20 @@ std::string split_text(const pipeline::SplitJudgement& split) {
     return "Where the error came from is not told: " + split.not_offered + ".\n";
   }
   std::vector<std::vector<std::string>> rows{{"run", "error", "labels", "maps", "curve shape",
-                                              "locality", "shape + locality", "stations",
-                                              "left out"}};
+                                              "locality", "neighbourhood", "shape + locality",
+                                              "stations", "left out"}};
   for (const pipeline::RunSplit& run : split.runs) {
     const validation::SplitSummary& s = run.summary;
     rows.push_back({run.run, part_text(s.total), part_text(s.labels), part_text(s.maps),
-                    part_text(s.curve_shape), part_text(s.locality),
+                    part_text(s.curve_shape), part_text(s.locality), part_text(s.neighbourhood),
                     part_text(s.curve_shape_and_locality), fmt::format("{}", s.n_split),
                     fmt::format("{}", s.n_left_out)});
   }
   return "Where the error came from: rms (largest), Pa\n" + text_table(rows) +
          "labels: wrong pressures of the levels. maps: noise, levelling and position of the maps. "
          "curve shape: the\ncurve between levels. locality: each station read on its own, while "
-         "the wall feels its neighbours. The\nfour add up at every station, with their signs; "
+         "the wall feels its neighbours.\nneighbourhood: what heeding the neighbours changed; it "
+         "takes locality and noise back. The five add up at every\nstation, with their signs; "
          "their rms do not add in squares.\n";
 }
 

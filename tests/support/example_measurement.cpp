@@ -81,14 +81,15 @@ void add_calibration(Measurement& m, const ExampleSize& size) {
 
 void add_empty_runs(Measurement& m, Index n_r, Index n_x) {
   m.flow_rate = m.flow_rate_uncertainty = nan1(n_r);
-  for (Array2* array :
-       {&m.deflection, &m.deflection_uncertainty, &m.pressure, &m.pressure_uncertainty,
-        &m.pressure_lower, &m.pressure_upper, &m.resistance_pressure}) {
+  for (Array2* array : {&m.deflection, &m.deflection_uncertainty, &m.pressure,
+                        &m.pressure_uncertainty, &m.pressure_lower, &m.pressure_upper,
+                        &m.pressure_local, &m.pressure_local_uncertainty, &m.resistance_pressure}) {
     *array = nan2(n_r, n_x);
   }
-  for (Array1* array : {&m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
-                        &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds,
-                        &m.transducer_drop, &m.parasitic_drop, &m.en_number}) {
+  for (Array1* array :
+       {&m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
+        &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
+        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength}) {
     *array = nan1(n_r);
   }
   m.pressure_flags = Flags2::Zero(n_r, n_x);
@@ -183,6 +184,8 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
     m.pressure_uncertainty(run, ix) = std::sqrt(total);
     m.pressure_lower(run, ix) = m.pressure(run, ix) - 1.96 * std::sqrt(total);
     m.pressure_upper(run, ix) = m.pressure(run, ix) + 1.98 * std::sqrt(total);
+    m.pressure_local(run, ix) = m.pressure(run, ix) + 3.0;
+    m.pressure_local_uncertainty(run, ix) = 1.1 * std::sqrt(total);
   }
   covariance = tilt_effect.matrix() * tilt_effect.matrix().transpose() +
                label_effect.matrix() * label_effect.matrix().transpose();
@@ -207,6 +210,7 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   m.reynolds(run) = 2.0 * Q / (kViscosity / kDensity * (kWidth + flow.mean_gap));
   m.parasitic_drop(run) = 0.11 * flow.drop;
   if (run != 2) m.transducer_drop(run) = flow.drop + m.parasitic_drop(run) + 25.0 * noise.normal();
+  m.half_response_wavelength(run) = 1.1e-3;
   m.en_number(run) =
       std::abs(m.extracted_drop(run) - m.resistance_drop(run)) /
       (2.0 * std::hypot(m.extracted_drop_uncertainty(run), m.resistance_drop_uncertainty(run)));
@@ -310,6 +314,7 @@ Measurement example_measurement(const ExampleSize& size) {
   m.source = "manoscope 0.1.0 (0123456789ab)";
   m.history = "manoscope measure S1 -o S1/result";
   m.experiment = "manoscope = 1\nname = \"S1 µ\"\n";
+  m.reading = "through the influence operator of a clamped wall fitted to the calibration";
   m.settings = "read_pressure.coverage = 0.95\nseed = 1\n";
   m.warnings = {"run Q5: 12 stations near the outlet are ambiguous: the wall snaps through there",
                 "h03.gsf: 2 % of the pixels are missing"};

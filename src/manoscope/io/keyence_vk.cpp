@@ -4,7 +4,8 @@
 // 1419732. Little-endian. A head of 12 bytes and 17 offsets, to the conditions of the measurement
 // and to the images; sizes of pixels and steps of height in pm. An image has its numbers of columns
 // and rows, the bits of a pixel, a palette, and the pixels as unsigned numbers. Rows run from the
-// top. The format marks no missing heights.
+// top. The format marks no missing heights. Of .vk3 no description is public: one that is
+// laid out as a .vk4 is read, one whose table of offsets is shorter is refused.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ constexpr double kPicometre = 1e-12;
 constexpr const char* kSaveAgain = "Save it with Keyence's program again, or export it as text";
 
 /// Where the table of offsets has what is wanted here.
-enum OffsetPlace { conditions = 0, light = 3, height = 6, n_images_of_a_kind = 3 };
+enum OffsetPlace { conditions = 0, light = 3, height = 6, n_images_of_a_kind = 3, n_offsets = 18 };
 /// Where the conditions have what is wanted here, in steps of 4 bytes.
 enum ConditionPlace {
   year = 1,
@@ -95,6 +96,14 @@ std::vector<Channel> read_vk4(ByteCursor& cursor, const ReadOptions& options) {
   const auto offset_at = [&](int place) {
     return std::uint64_t{u32_at(cursor, kOffsets + 4 * static_cast<std::uint64_t>(place))};
   };
+  const std::uint64_t table_end = kOffsets + 4 * n_offsets;
+  if (offset_at(conditions) < table_end) {
+    throw InputError(where,
+                     fmt::format("its conditions of the measurement begin at byte {}, inside what "
+                                 "is the table of offsets of a .vk4",
+                                 offset_at(conditions)),
+                     kSaveAgain);
+  }
   const Conditions measured(cursor, offset_at(conditions));
   std::vector<Channel> channels;
   const auto add = [&](const char* name, int first_place, double scale, const char* unit) {

@@ -46,6 +46,18 @@ TEST(KeyenceVk, ReadsTheVk4FileInsideALaterOne) {
   expect_the_map(read_channels(folder.write("a.vk7", "VK7" + std::string(4, '\0') + archive)));
 }
 
+TEST(KeyenceVk, AVk3LaidOutAsAVk4IsReadAndOneWithAShorterTableRefused) {
+  const TestFolder folder;
+  KeyenceVk4 file;
+  file.magic = "VK3_";
+  const auto path = folder.write("a.vk3", file.bytes());
+  EXPECT_EQ(find_reader(path).name(), "keyence-vk");
+  expect_the_map(read_channels(path));
+  file.n_offsets = 14;
+  EXPECT_TRUE(contains(refusal(folder, "b.vk3", file.bytes()),
+                       "begin at byte 68, inside what is the table of offsets"));
+}
+
 TEST(KeyenceVk, FaultyFilesAreNamed) {
   const TestFolder folder;
   const auto fault = [&](auto&& spoil) {

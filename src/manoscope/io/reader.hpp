@@ -95,10 +95,11 @@ const Reader& find_any_reader(const std::filesystem::path& path, const ReadOptio
 std::vector<Channel> read_channels(const std::filesystem::path& path,
                                    const ReadOptions& options = {});
 
-/// A height map and what is doubtful in its file.
+/// A height map, what is doubtful in its file, and where its window lies in the camera.
 struct LoadedMap {
   HeightMap map;
   std::vector<std::string> warnings;
+  Index offset_x = 0, offset_y = 0;  ///< first pixel's position in the camera frame
 };
 
 /// The height channel of a file; of `FILE#n`, of its n-th page, frame or channel.

@@ -179,7 +179,8 @@ LoadedMap height_map(Channel& channel, const ReadOptions& options, const std::st
                      fmt::format("none of its {} pixels holds a height", channel.values.size()),
                      "Measure or export the map again");
   }
-  return {HeightMap(grid, std::move(channel.values)), std::move(channel.warnings)};
+  return {HeightMap(grid, std::move(channel.values)), std::move(channel.warnings), channel.offset_x,
+          channel.offset_y};
 }
 
 /// The reader with the highest score, nullptr if none knows the file.

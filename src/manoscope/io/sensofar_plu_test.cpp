@@ -38,6 +38,28 @@ TEST(SensofarPlu, LayersAreChannelsAndAnOldFileHasOne) {
   EXPECT_EQ(read_channels(folder.write("a.plu", file.bytes())).size(), 1U);
 }
 
+TEST(SensofarPlu, AProfileIsOneRowAndNoMap) {
+  const TestFolder folder;
+  SensofarPlu file;
+  file.type = 1;
+  file.nx = 6;
+  file.ny = 1;
+  const auto path = folder.write("a.plu", file.bytes());
+  const auto channels = read_channels(path);
+  ASSERT_EQ(channels.size(), 1U);
+  EXPECT_EQ(channels[0].grid.nx, 6);
+  EXPECT_EQ(channels[0].grid.ny, 1);
+  EXPECT_DOUBLE_EQ(channels[0].grid.pitch_x.in(um), 1.5);
+  EXPECT_DOUBLE_EQ(channels[0].values(0, 3), 4e-6);
+  EXPECT_TRUE(std::isnan(channels[0].values(0, 4)));
+  EXPECT_TRUE(contains(complaint([&] { read_height_map(path); }), "6 x 1 pixels: a profile"));
+  // Several profiles below one another: type 2.
+  file.type = 2;
+  file.nx = 3;
+  file.ny = 2;
+  EXPECT_EQ(read_channels(folder.write("b.plu", file.bytes()))[0].grid.ny, 2);
+}
+
 TEST(SensofarPlu, OnlyAMapIsRead) {
   const TestFolder folder;
   SensofarPlu file;

@@ -42,7 +42,7 @@ struct AliconaAl3d {
 /// Sensofar .plu: layers of 3 x 2 heights in um.
 struct SensofarPlu {
   std::string date = "Fri Mar 10 16:35:59 2023";
-  std::uint64_t type = 3, nx = 3;
+  std::uint64_t type = 3, nx = 3, ny = 2;
   int n_layers = 1;
 
   std::string bytes() const {
@@ -50,11 +50,11 @@ struct SensofarPlu {
     put(out, 0, date);
     put(out, 132, "a comment");
     put(out, 388,
-        little(2, 4) + little(nx, 4) + little(3, 4) + little(0.0F) + little(1.5F) + little(-2.5F));
+        little(ny, 4) + little(nx, 4) + little(3, 4) + little(0.0F) + little(1.5F) + little(-2.5F));
     put(out, 428, little(type, 4) + little(3, 4) + little(0, 4) + little(14, 4));
     put(out, 489, std::string(1, static_cast<char>(n_layers)));
     for (int layer = 0; layer < std::max(n_layers, 1); ++layer) {
-      out += little(2, 4) + little(nx, 4);
+      out += little(ny, 4) + little(nx, 4);
       for (const float height : {1.0F, 2.0F, 3.0F, 4.0F, 1000001.0F, 6.0F}) {
         out += little(height + (height > 1e6F ? 0.0F : static_cast<float>(layer)));
       }
@@ -136,6 +136,8 @@ struct KeyenceVk4 {
   int height_bits = 32;
   std::uint64_t nx = 3, compression = 0;
   bool with_images = true;
+  std::string magic = "VK4_";
+  std::uint64_t n_offsets = 18;
 
   std::string image(int bits) const {
     std::string out = little(nx, 4) + little(2, 4) + little(static_cast<std::uint64_t>(bits), 4) +
@@ -153,11 +155,13 @@ struct KeyenceVk4 {
     put(conditions, 4 * 24, little(200, 4));
     put(conditions, 4 * 42, little(1380000, 4) + little(1390000, 4) + little(100, 4));
     const std::string light = image(16), height = image(height_bits);
-    std::string out = "VK4_" + little(0x10000000, 4) + little(0, 4) + std::string(72, '\0');
-    put(out, 12, little(84, 4));
+    std::string out =
+        magic + little(0x10000000, 4) + little(0, 4) + std::string(4 * n_offsets, '\0');
+    const std::size_t begin = out.size();
+    put(out, 12, little(begin, 4));
     if (with_images) {
-      put(out, 12 + 4 * 3, little(84 + 304, 4));
-      put(out, 12 + 4 * 6, little(84 + 304 + light.size(), 4));
+      put(out, 12 + 4 * 3, little(begin + 304, 4));
+      put(out, 12 + 4 * 6, little(begin + 304 + light.size(), 4));
     }
     return out + conditions + light + height;
   }

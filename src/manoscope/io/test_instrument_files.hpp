@@ -57,7 +57,7 @@ struct WykoOpd {
                           little(static_cast<std::uint64_t>(element_bytes), 2);
     for (const int element : elements) {
       heights += element_bytes == 4 ? little(static_cast<float>(element))
-                                    : little(static_cast<std::uint64_t>(element), 2);
+                                    : little(static_cast<std::uint64_t>(element), element_bytes);
     }
     if (bad_float) heights.replace(heights.size() - 4, 4, little(1e38F));
     std::string image = little(3, 2) + little(2, 2) + little(1, 2);

@@ -1,5 +1,5 @@
 // Maps in TIFF: one sample a pixel, integers of 8 to 32 bits or floats of 32 and 64, one channel a
-// page.
+// page; of an ImageJ stack with one page alone, one channel a frame (tiff_stack.hpp).
 //
 // Source: TIFF revision 6.0; the BigTIFF design; the description lines of ImageJ as its FileInfo
 // documents them. Rows from the top unless the orientation tag says otherwise. NaN = missing.
@@ -17,6 +17,7 @@
 #include "manoscope/io/formats.hpp"
 #include "manoscope/io/tiff_handle.hpp"
 #include "manoscope/io/tiff_header.hpp"
+#include "manoscope/io/tiff_stack.hpp"
 
 namespace manoscope::io {
 namespace {
@@ -74,6 +75,13 @@ struct Page {
     }
   }
 
+  SampleType sample_type() const {
+    if (is_float()) return bits == 32 ? SampleType::f32 : SampleType::f64;
+    const bool is_signed = format == SAMPLEFORMAT_INT;
+    if (bits == 8) return is_signed ? SampleType::i8 : SampleType::u8;
+    if (bits == 16) return is_signed ? SampleType::i16 : SampleType::u16;
+    return is_signed ? SampleType::i32 : SampleType::u32;
+  }
   bool is_float() const { return format == SAMPLEFORMAT_IEEEFP; }
   std::uint64_t bytes() const { return bits / 8U; }
 };
@@ -109,6 +117,7 @@ class TiffMap {
  public:
   TiffMap(const std::filesystem::path& path, const ReadOptions& options)
       : options_(options),
+        path_(path),
         where_(path.string()),
         handle_(path),
         n_bytes_(std::filesystem::file_size(path)) {}
@@ -129,13 +138,17 @@ class TiffMap {
       const TiffDescription description = read_tiff_description(page.description, place);
       // ImageJ describes a stack on its first page.
       if (n_pages == 1) first_ = description;
-      const bool wanted = options_.page == 0 || options_.page == n_pages;
       if (is_picture(page)) {
         ++n_pictures;
-      } else if (wanted) {
-        channels.push_back(channel(page, place));
-        channels.back().name = fmt::format("page {}", n_pages);
-        channels.back().page = n_pages;
+      } else {
+        const TiffStack stack = n_pages == 1 ? frames(page, place) : TiffStack{};
+        for (std::uint64_t frame = 0; frame < stack.n_frames; ++frame) {
+          if (frame > 0) ++n_pages;
+          if (options_.page != 0 && options_.page != n_pages) continue;
+          channels.push_back(channel(page, place, stack, frame));
+          channels.back().name = fmt::format("page {}", n_pages);
+          channels.back().page = n_pages;
+        }
       }
       const NoTraps no_traps;
       more = TIFFReadDirectory(handle_.get()) == 1;
@@ -169,6 +182,22 @@ class TiffMap {
  private:
   bool is_picture(const Page& page) const {
     return page.samples != 1 || page.bits < 8 || (page.bits == 8 && !first_.has_calibration);
+  }
+
+  /// Of the first page.
+  TiffStack frames(const Page& page, const std::string& place) const {
+    const NoTraps no_traps;
+    if (!first_.is_imagej || TIFFLastDirectory(handle_.get()) == 0) return {};
+    const double frame_bytes =
+        static_cast<double>(page.nx) * page.ny * static_cast<double>(page.bytes());
+    // No number of frames of more bytes than the file has is looked for, and none overflows.
+    if (!(frame_bytes < static_cast<double>(n_bytes_))) return {};
+    const TiffStack stack = find_tiff_stack(handle_.get(), n_bytes_, first_.n_images,
+                                            static_cast<std::uint64_t>(frame_bytes), place);
+    if (stack.n_frames > kMostPages) {
+      throw InputError(where_, fmt::format("has more than {} images", kMostPages), kExportAgain);
+    }
+    return stack;
   }
 
   void check(const Page& page, const std::string& place) {
@@ -304,7 +333,8 @@ class TiffMap {
     return Length::from_si(checked_pitch(unit_m / resolution, "its resolution", place));
   }
 
-  Channel channel(const Page& page, const std::string& place) {
+  Channel channel(const Page& page, const std::string& place, const TiffStack& stack,
+                  std::uint64_t frame) {
     check(page, place);
     Channel channel;
     channel.grid.nx = page.nx;
@@ -313,7 +343,10 @@ class TiffMap {
     channel.settings.insert(channel.settings.end(), first_.settings.begin(), first_.settings.end());
     channel.grid.pitch_x = pitch(page, page.x_resolution, first_.pitch_x_m, channel, place);
     channel.grid.pitch_y = pitch(page, page.y_resolution, first_.pitch_y_m, channel, place);
-    if (TIFFIsTiled(handle_.get()) != 0) {
+    if (frame > 0) {
+      channel.values =
+          read_tiff_frame(path_, handle_.get(), stack, frame, page.sample_type(), page.nx, page.ny);
+    } else if (TIFFIsTiled(handle_.get()) != 0) {
       read_tiles(page, channel.values, place);
     } else {
       read_rows(page, channel.values, place);
@@ -337,6 +370,7 @@ class TiffMap {
   }
 
   const ReadOptions& options_;
+  std::filesystem::path path_;
   std::string where_;
   TiffHandle handle_;
   std::uintmax_t n_bytes_;

@@ -4,6 +4,7 @@
 
 #include "manoscope/io/reader.hpp"
 #include "manoscope/io/test_files.hpp"
+#include "manoscope/io/test_instrument_files.hpp"
 #include "manoscope/io/test_tiff.hpp"
 
 namespace manoscope::io {
@@ -12,12 +13,16 @@ namespace {
 using testing::big;
 using testing::complaint;
 using testing::contains;
+using testing::literal_lzw;
+using testing::literal_packbits;
 using testing::little;
 using testing::refusal;
+using testing::stored_zlib;
 using testing::TestFolder;
 using testing::tiff_file;
 using testing::tiff_floats;
 using testing::TiffPage;
+using testing::tiled_page;
 
 TEST(Tiff, ReadsFloatsInBothByteOrdersTopRowFirst) {
   const TestFolder folder;
@@ -61,6 +66,133 @@ TEST(Tiff, IntegersTakeTheCalibrationOfTheDescription) {
   bent.data = tiff_floats(1.0F);
   bent.description = "ImageJ=1.53t\ncf=4\nc0=-10\nc1=0.5\n";
   EXPECT_TRUE(contains(refusal(folder, "a.tif", tiff_file({bent})), "no straight line"));
+}
+
+TEST(Tiff, SixtyFourBitFloatsKeepEveryDigit) {
+  const TestFolder folder;
+  for (const bool is_little : {true, false}) {
+    TiffPage page;
+    page.bits = 64;
+    const double third = 1.0 / 3.0;
+    for (const double value : {third, 2.0, 3.0, 4.0, 5.0, std::nan("")}) {
+      page.data += is_little ? little(value) : big(value);
+    }
+    const Channel channel =
+        read_channels(folder.write("a.tif", tiff_file({page}, is_little))).front();
+    EXPECT_EQ(channel.values(0, 0), third);
+    EXPECT_EQ(channel.values(1, 1), 5.0);
+    EXPECT_TRUE(std::isnan(channel.values(1, 2)));
+  }
+}
+
+TEST(Tiff, EveryPackingGivesTheSameHeights) {
+  const TestFolder folder;
+  const std::string plain = tiff_floats(1.0F);
+  struct Packing {
+    int method;
+    std::string data;
+  };
+  for (const Packing& packing : {Packing{5, literal_lzw(plain)}, Packing{8, stored_zlib(plain)},
+                                 Packing{32946, stored_zlib(plain)},
+                                 Packing{32773, literal_packbits(plain.substr(0, 12)) +
+                                                    literal_packbits(plain.substr(12))}}) {
+    SCOPED_TRACE(packing.method);
+    TiffPage page;
+    page.compression = packing.method;
+    page.data = packing.data;
+    const Array2 values = read_channels(folder.write("a.tif", tiff_file({page}))).front().values;
+    for (Index i = 0; i < 5; ++i) EXPECT_EQ(values.data()[i], static_cast<double>(i + 1));
+    EXPECT_TRUE(std::isnan(values(1, 2)));
+  }
+}
+
+TEST(Tiff, TilesAreLaidTogetherAndWhatTheyHoldBeyondTheImageIsNotRead) {
+  const TestFolder folder;
+  for (const bool packed : {false, true}) {
+    for (const auto& [nx, ny] : {std::pair{5U, 3U}, std::pair{20U, 18U}, std::pair{16U, 16U}}) {
+      TiffPage page = tiled_page(nx, ny);
+      if (packed) {
+        page.compression = 8;
+        for (std::string& tile : page.tiles) tile = stored_zlib(tile);
+      }
+      const Array2 values = read_channels(folder.write("a.tif", tiff_file({page}))).front().values;
+      ASSERT_EQ(values.rows(), ny);
+      ASSERT_EQ(values.cols(), nx);
+      for (Index i = 0; i < values.size(); ++i) {
+        ASSERT_EQ(values.data()[i], static_cast<double>(i)) << nx << ' ' << packed;
+      }
+    }
+  }
+}
+
+TEST(Tiff, BigTiffIsReadInBothByteOrdersInStripsAndTiles) {
+  const TestFolder folder;
+  for (const bool is_little : {true, false}) {
+    TiffPage first, second = tiled_page(20, 18, is_little);
+    first.data = tiff_floats(1.0F, is_little);
+    first.description = "ImageJ=1.53t\nunit=um\nvunit=nm\n";
+    first.per_unit_x = first.per_unit_y = 0.5;
+    const auto path = folder.write("a.tif", tiff_file({first, second}, is_little, true));
+    EXPECT_EQ(find_reader(path).name(), "tiff");
+    const auto channels = read_channels(path);
+    ASSERT_EQ(channels.size(), 2U);
+    EXPECT_DOUBLE_EQ(channels[0].grid.pitch_x.in(um), 2.0);
+    EXPECT_DOUBLE_EQ(channels[0].values(1, 1), 5e-9);
+    EXPECT_DOUBLE_EQ(channels[1].values(17, 19), 359e-9);
+  }
+}
+
+/// ImageJ writes stacks beyond 4 GB, and those of its virtual ones, as one page whose frames follow
+/// one another without pages of their own.
+TiffPage raw_stack(int n_announced, int n_there) {
+  TiffPage page;
+  for (int i = 0; i < n_there; ++i) page.data += tiff_floats(10.0F * static_cast<float>(i));
+  page.description =
+      "ImageJ=1.53t\nimages=" + std::to_string(n_announced) + "\nunit=um\nvunit=nm\n";
+  page.per_unit_x = page.per_unit_y = 0.5;
+  page.strip_bytes = tiff_floats(0.0F).size();
+  return page;
+}
+
+TEST(Tiff, FramesThatFollowTheOnePageOfAnImageJStackArePages) {
+  const TestFolder folder;
+  const auto path = folder.write("a.tif", tiff_file({raw_stack(3, 3)}));
+  const auto channels = read_channels(path);
+  ASSERT_EQ(channels.size(), 3U);
+  for (int i = 0; i < 3; ++i) {
+    const Channel& frame = channels[static_cast<std::size_t>(i)];
+    EXPECT_EQ(frame.name, "page " + std::to_string(i + 1));
+    EXPECT_EQ(frame.page, i + 1);
+    EXPECT_DOUBLE_EQ(frame.grid.pitch_x.in(um), 2.0);
+    EXPECT_DOUBLE_EQ(frame.values(0, 0), 10e-9 * i);
+    EXPECT_DOUBLE_EQ(frame.values(1, 1), 5e-9);
+    EXPECT_TRUE(frame.warnings.empty());
+  }
+  EXPECT_DOUBLE_EQ(read_height_map(path.string() + "#3").height()(0, 0), 20e-9);
+  EXPECT_TRUE(contains(complaint([&] { read_height_map(path.string() + "#4"); }), "has no page 4"));
+  // Big-endian, as ImageJ itself writes.
+  TiffPage turned = raw_stack(2, 0);
+  turned.data = tiff_floats(1.0F, false) + tiff_floats(7.0F, false);
+  EXPECT_DOUBLE_EQ(
+      read_height_map((folder.write("b.tif", tiff_file({turned}, false))).string() + "#2")
+          .height()(0, 0),
+      7e-9);
+}
+
+TEST(Tiff, AnImageJStackThatIsCutShortIsRefusedAndAnImageOutOfAStackIsRead) {
+  const TestFolder folder;
+  EXPECT_TRUE(contains(refusal(folder, "a.tif", tiff_file({raw_stack(40, 2)})),
+                       "a stack of 40 images is announced, the file has room for 2"));
+  // Programs that take an image out of a stack leave its description: one frame, plain or packed.
+  TiffPage alone = raw_stack(40, 1), packed = alone;
+  packed.compression = 5;
+  packed.data = literal_lzw(alone.data);
+  packed.strip_bytes = 0;
+  for (const TiffPage& page : {alone, packed}) {
+    const auto channels = read_channels(folder.write("b.tif", tiff_file({page})));
+    ASSERT_EQ(channels.size(), 1U);
+    EXPECT_TRUE(contains(channels[0].warnings.front(), "a stack of 40 images is announced, 1 are"));
+  }
 }
 
 TEST(Tiff, PagesAreChannelsAndPicturesAreNot) {

@@ -58,6 +58,19 @@ TEST(WykoOpd, BadElementsOfEachTypeAreMissing) {
   EXPECT_FALSE(std::isnan(of_f32[0].values(1, 1)));
 }
 
+TEST(WykoOpd, HeightsOfOneByteAreUnsignedAndNoneIsMissing) {
+  const TestFolder folder;
+  WykoOpd file;
+  file.element_bytes = 1;
+  file.elements = {0, 1, 127, 128, 254, 255};
+  const auto channels = read_channels(folder.write("a.opd", file.bytes()));
+  Array2 expected(2, 3);
+  expected << 1, 128, 255, 0, 127, 254;  // up the columns; 80 nm / 16 each
+  for (Index i = 0; i < 6; ++i) {
+    EXPECT_DOUBLE_EQ(channels[0].values.data()[i], 5e-9 * expected.data()[i]);
+  }
+}
+
 TEST(WykoOpd, KeepsTheInstrumentsSettings) {
   const TestFolder folder;
   const auto channels = read_channels(folder.write("a.opd", WykoOpd().bytes()));

@@ -212,20 +212,28 @@ Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n
 
 std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
                                       std::vector<ReducedMap>& flow, Length length, Length width,
-                                      const ReduceOptions& options) {
+                                      const ReduceOptions& options, bool from_the_wall) {
   if (!options.registration || options.shift_uncertainty) return std::nullopt;
   const auto profiles = [](const std::vector<ReducedMap>& maps) {
     std::vector<const Profile*> found;
     for (const ReducedMap& map : maps) found.push_back(&map.profile);
     return found;
   };
-  const Registration found =
-      register_profiles(profiles(hydrostatic), profiles(flow), length, width);
-  const auto move = [](ReducedMap& map, const std::optional<MapShift>& shift) {
+  Registration found = register_profiles(profiles(hydrostatic), profiles(flow), length, width);
+  Length common{};
+  if (from_the_wall && found.offset && !hydrostatic.empty() &&
+      found.offset->uncertainty < hydrostatic.front().condition.shift.uncertainty) {
+    std::swap(common, found.offset->shift);
+  }
+  const auto move = [common](ReducedMap& map, const std::optional<MapShift>& shift) {
     const Length assumed = map.condition.shift.uncertainty;
-    if (!shift || shift->uncertainty >= assumed) return;
-    move_profile(map.profile, *shift, map.condition.name, assumed);
-    map.condition.shift = *shift;
+    const bool is_found = shift && shift->uncertainty < assumed;
+    if (!is_found && common == Length{}) return;
+    // A map whose own shift is not known lies where the others do, as well as was supposed.
+    MapShift whole = is_found ? *shift : MapShift{Length{}, assumed};
+    whole.shift += common;
+    move_profile(map.profile, whole, map.condition.name, assumed);
+    map.condition.shift = whole;
   };
   for (std::size_t i = 0; i < hydrostatic.size(); ++i) move(hydrostatic[i], found.hydrostatic[i]);
   for (std::size_t i = 0; i < flow.size(); ++i) move(flow[i], found.flow[i]);

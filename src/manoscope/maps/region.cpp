@@ -226,6 +226,33 @@ void place_on(const Rectangle& rectangle, const AxisView& view, ChannelFrame& fr
   frame.origin_y = Length::from_si(centre_y - dy);
 }
 
+/// Compares a given place with the wall that answers to pressure, to about a pixel.
+void compare_place(const Response& response, FoundPlace& found, const std::string& name) {
+  const ChannelFrame& frame = found.frame;
+  constexpr double kClear = 5.0;
+  if (!(response.top > kClear * response.sigma)) return;
+  const double sign = find_outward(response) == Outward::plus_height ? 1.0 : -1.0;
+  const AxisView view(response, frame.along_columns(), sign);
+  Rectangle rectangle;
+  try {
+    rectangle = find_rectangle(view, name);
+  } catch (const InputError&) {
+    return;  // what moves is no rectangle: nothing to compare with
+  }
+  const double along = 0.5 * (view.along(rectangle.along.first) + view.along(rectangle.along.last));
+  const double across =
+      0.5 * (view.across(rectangle.across.first) + view.across(rectangle.across.last));
+  const double column = frame.along_columns() ? along : across;
+  const double row = frame.along_columns() ? across : along;
+  const auto [middle_column, middle_row] = frame.camera_from_channel(0.5 * frame.length.si(), 0.0);
+  // Turned back into the frame's axes.
+  const double c = std::cos(frame.rotation.si()), s = std::sin(frame.rotation.si());
+  const double dx = column - middle_column, dy = row - middle_row;
+  const double u = c * dx + s * dy, v = -s * dx + c * dy;
+  found.along_misfit = frame.flow_sign() * (frame.along_columns() ? u : v);
+  found.across_misfit = frame.across_sign() * (frame.along_columns() ? v : u);
+}
+
 /// The frame of a place that is given whole, if the channel fits in the map on one side only.
 std::optional<ChannelFrame> only_fit(const KnownPlace& known, const CameraGrid& grid) {
   ChannelFrame frame;
@@ -248,13 +275,14 @@ std::optional<ChannelFrame> only_fit(const KnownPlace& known, const CameraGrid& 
 FoundPlace find_place(const RegionMaps& maps, const KnownPlace& known, const std::string& name) {
   MANO_ASSERT(maps.low != nullptr && maps.high != nullptr);
   FoundPlace found;
-  found.length_misfit = found.width_misfit = kNan;
+  found.length_misfit = found.width_misfit = found.along_misfit = found.across_misfit = kNan;
   ChannelFrame& frame = found.frame;
   frame.length = known.length;
   frame.width = known.width;
   if (known.complete()) {
     if (const auto given = only_fit(known, maps.low->grid())) {
       frame = *given;
+      compare_place(wall_response(*maps.low, *maps.high, name), found, name);
       return found;
     }
   }
@@ -304,6 +332,7 @@ FoundPlace find_place(const RegionMaps& maps, const KnownPlace& known, const std
   }
   const bool flow_open = known.origin && !known.flow && maps.flowing == nullptr;
   settle_sides(frame, flow_open, known.origin.has_value(), response, name);
+  if (known.origin) compare_place(response, found, name);
   return found;
 }
 

@@ -29,6 +29,10 @@ struct FoundPlace {
   /// Distance between the two ends (sides) at which the wall begins to move, minus the stated
   /// length (width): should be near 0. NaN where the place was given.
   double length_misfit = 0.0, width_misfit = 0.0;  ///< m
+  /// Where the origin was given: the middle between the wall's ends (sides) minus that of the
+  /// frame, along the flow (across it, towards growing z). NaN where it was found, or no wall is
+  /// made out.
+  double along_misfit = 0.0, across_misfit = 0.0;  ///< m
 };
 
 /// Two states of the wall whose difference shows it: a low and a high pressure, and, if there is

@@ -156,6 +156,32 @@ TEST(FindPlace, TakesWhatIsGivenAsGiven) {
   EXPECT_TRUE(std::isnan(found.width_misfit));
 }
 
+TEST(FindPlace, TellsHowFarTheWallLiesFromAGivenPlace) {
+  for (const FlowDirection flow : kDirections) {
+    for (const bool across_reversed : {false, true}) {
+      const Scene scene =
+          make_scene(frame_at(kLength, kWidth, flow, across_reversed, 0.75 * mm, 0.7 * mm));
+      const bool along_columns = scene.frame.along_columns();
+      for (const auto& [along_mm, across_mm] :
+           {std::pair{0.0, 0.0}, std::pair{0.4, 0.0}, std::pair{-0.3, 0.25}}) {
+        // The given place lies that much off, so that the wall lies off it the other way.
+        KnownPlace known = scene.size_only();
+        const double along = scene.frame.flow_sign() * along_mm;
+        const double across = scene.frame.across_sign() * across_mm;
+        known.origin = {{scene.frame.origin_x + (along_columns ? along : across) * mm,
+                         scene.frame.origin_y + (along_columns ? across : along) * mm}};
+        known.flow = flow;
+        known.outward = Outward::plus_height;
+        const FoundPlace found = find_place(scene.still(), known, "m");
+        if (found.frame.across_reversed != across_reversed) continue;  // both sides would fit
+        // The ends are found to a pixel of 53 um each.
+        EXPECT_NEAR(found.along_misfit, -along_mm * 1e-3, 53e-6);
+        EXPECT_NEAR(found.across_misfit, -across_mm * 1e-3, 50e-6);
+      }
+    }
+  }
+}
+
 TEST(FindPlace, SettlesTheSideToWhichTheChannelExtendsFromItsOrigin) {
   for (const FlowDirection flow : kDirections) {
     for (const bool reversed : {false, true}) {

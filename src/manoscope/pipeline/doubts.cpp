@@ -35,6 +35,38 @@ void doubt_place(const experiment::Experiment& experiment, const maps::FoundPlac
   say("width", place.width_misfit, experiment.channel.width, across);
 }
 
+/// Whether the wall that answers to pressure lies where the experiment file says; told if not.
+/// To a pixel or so: what registration finds is finer and holds close to the truth alone.
+bool doubt_given_place(const maps::FoundPlace& place, const ReducedExperiment& reduced,
+                       Words& doubts) {
+  constexpr double kShare = 0.05, kPixels = 2.0;  // as for length and width
+  const ChannelFrame& frame = reduced.frame;
+  const bool along_columns = frame.along_columns();
+  const Length along = along_columns ? reduced.grid.pitch_x : reduced.grid.pitch_y;
+  const Length across = along_columns ? reduced.grid.pitch_y : reduced.grid.pitch_x;
+  const auto is_off = [&](double misfit, Length pitch) {
+    const double bound = std::max(kShare * frame.width, kPixels * pitch).si();
+    return !std::isnan(misfit) && std::abs(misfit) > bound;
+  };
+  const bool off_along = is_off(place.along_misfit, along);
+  const bool off_across = is_off(place.across_misfit, across);
+  if (!off_along && !off_across) return true;
+  std::string where;
+  if (off_along) {
+    where = fmt::format("{:.2f} mm further {}", std::abs(place.along_misfit) * 1e3,
+                        place.along_misfit > 0.0 ? "downstream" : "upstream");
+  }
+  if (off_across) {
+    where += fmt::format("{}{:.2f} mm to one side", where.empty() ? "" : " and ",
+                         std::abs(place.across_misfit) * 1e3);
+  }
+  doubts.push_back(
+      fmt::format("The wall that answers to pressure lies {} of where the experiment file has the "
+                  "channel: check channel.origin, or leave it out to have it found",
+                  where));
+  return false;
+}
+
 /// The wall's own ends against the frame they were read in.
 void doubt_origin(const ReducedExperiment& reduced, Words& doubts) {
   if (!reduced.offset) return;
@@ -73,8 +105,31 @@ void doubt_centre(const ReducedExperiment& reduced, Words& doubts) {
   }
 }
 
+/// A bend of the frame that is the same in every map adds the same height to every deflection: the
+/// reading of p(x) does not notice, but the gap and so QR ~ gap^-3 are off by it.
+void doubt_common_bend(const experiment::Experiment& experiment,
+                       const std::vector<const maps::RimBend*>& bends, double mean, Words& doubts) {
+  constexpr double kSigmas = 5.0, kShare = 1e-3;  // of the height, where its uncertainty is unknown
+  double variance = 0.0;
+  for (const auto* bend : bends) variance += std::pow(bend->at_middle_uncertainty.si(), 2);
+  const double n = static_cast<double>(bends.size());
+  const double height = experiment.channel.height.si();
+  const double known = experiment.channel.height_uncertainty
+                           ? experiment.channel.height_uncertainty->si()
+                           : kShare * height;
+  const bool clear = variance > 0.0 && std::abs(mean) > kSigmas * std::sqrt(variance) / n;
+  if (!clear || std::abs(mean) <= known || !(height > 0.0)) return;
+  doubts.push_back(fmt::format(
+      "The rigid rim is bent alike in all maps: by {:.0f} nm in the middle of the channel, which "
+      "goes into the gap and makes QR {:.2g} % too {}; p(x) does not notice. If the frame is flat "
+      "the bend is the instrument's: name a map of a flat mirror as instrument.reference, or try "
+      "--level-order 2",
+      mean * 1e9, 300.0 * std::abs(mean) / height, mean > 0.0 ? "small" : "large"));
+}
+
 /// A frame that bends from map to map moves the deflection by as much.
-void doubt_rim(const ReducedExperiment& reduced, Words& doubts) {
+void doubt_rim(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
+               Words& doubts) {
   if (reduced.level_order != 1) return;
   constexpr double kSigmas = 5.0;
   std::vector<const maps::RimBend*> bends;
@@ -83,6 +138,7 @@ void doubt_rim(const ReducedExperiment& reduced, Words& doubts) {
   double sum = 0.0, widest = 0.0, doubt = 0.0;
   for (const auto* bend : bends) sum += bend->at_middle.si();
   const double mean = sum / static_cast<double>(bends.size());
+  doubt_common_bend(experiment, bends, mean, doubts);
   for (const auto* bend : bends) {
     const double off = std::abs(bend->at_middle.si() - mean);
     const double sigma = bend->at_middle_uncertainty.si();
@@ -101,8 +157,10 @@ void doubt_rim(const ReducedExperiment& reduced, Words& doubts) {
 void doubt_maps(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
                 Words& doubts) {
   constexpr double kNoiseRatio = 1.3, kMissing = 0.2, kCorrelated = 2.0;
-  int noisy = 0, gappy = 0, correlated = 0;
-  double worst_ratio = 1.0, worst_missing = 0.0, worst_length = 1.0;
+  constexpr double kUnmended = 0.01;  // of the pixels: single ones are flagged in every noisy map
+  int noisy = 0, gappy = 0, correlated = 0, unmended = 0;
+  double worst_ratio = 1.0, worst_missing = 0.0, worst_length = 1.0, worst_unmended = 0.0;
+  const auto n_pixels = static_cast<double>(reduced.grid.nx * reduced.grid.ny);
   const auto look = [&](const maps::MapCondition& condition) {
     if (experiment.instrument.height_noise) {
       const double ratio = condition.noise.sigma / *experiment.instrument.height_noise;
@@ -112,6 +170,10 @@ void doubt_maps(const experiment::Experiment& experiment, const ReducedExperimen
     gappy += condition.missing > kMissing;
     worst_missing = std::max(worst_missing, condition.missing);
     const double length = std::max(condition.noise.length_x, condition.noise.length_z);
+    const double left_out =
+        n_pixels > 0.0 ? static_cast<double>(condition.fringe.flagged_pixels) / n_pixels : 0.0;
+    unmended += left_out > kUnmended;
+    worst_unmended = std::max(worst_unmended, left_out);
     correlated += length > kCorrelated;
     worst_length = std::max(worst_length, length);
   };
@@ -126,6 +188,12 @@ void doubt_maps(const experiment::Experiment& experiment, const ReducedExperimen
   if (gappy > 0) {
     doubts.push_back(fmt::format("{} maps lack more than {:.0f} % of their pixels, up to {:.0f} %",
                                  gappy, 100 * kMissing, 100 * worst_missing));
+  }
+  if (unmended > 0) {
+    doubts.push_back(fmt::format(
+        "{} maps have patches of a false fringe order that could not be mended, up to {:.1f} % of "
+        "their pixels, which are left out: state instrument.wavelength, or measure again",
+        unmended, 100 * worst_unmended));
   }
   if (correlated > 0) {
     doubts.push_back(fmt::format(
@@ -298,9 +366,11 @@ Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPla
                   const std::vector<RunFindings>& findings) {
   Words doubts;
   doubt_place(experiment, place, reduced, doubts);
-  doubt_origin(reduced, doubts);
-  doubt_centre(reduced, doubts);
-  doubt_rim(reduced, doubts);
+  if (doubt_given_place(place, reduced, doubts)) {
+    doubt_origin(reduced, doubts);
+    doubt_centre(reduced, doubts);
+  }
+  doubt_rim(experiment, reduced, doubts);
   doubt_maps(experiment, reduced, doubts);
   for (const std::string& doubt : file_warnings(experiment, reduced.file_warnings)) {
     doubts.push_back(doubt);

@@ -26,6 +26,10 @@ struct CleanCase {
     experiment.instrument.height_noise = 20.0 * nm;
     experiment.flow.resize(1);
     place.length_misfit = place.width_misfit = std::numeric_limits<double>::quiet_NaN();
+    place.along_misfit = place.across_misfit = std::numeric_limits<double>::quiet_NaN();
+    experiment.channel.height = 175.0 * um;
+    reduced.frame.length = 15.5 * mm;
+    reduced.frame.width = 1.7 * mm;
     for (int k = 0; k < 3; ++k) {
       maps::ReducedMap map;
       map.condition.noise.sigma = 20.0 * nm;
@@ -87,6 +91,96 @@ TEST(FindDoubts, OfTheStatedSizeNameItsKey) {
   test.place.length_misfit = 0.0;
   test.place.width_misfit = 0.2e-3;
   expect_says(test.only(), "channel.width");
+}
+
+TEST(FindDoubts, OfAGivenOriginTellWhereTheWallLies) {
+  CleanCase test;
+  test.reduced.grid = {1024, 192, 16.0 * um, 16.0 * um};
+  test.place.along_misfit = 0.08e-3;  // 5 % of the width are 0.085 mm
+  test.place.across_misfit = -0.08e-3;
+  EXPECT_TRUE(test.doubts().empty());
+  test.place.along_misfit = -0.5e-3;
+  expect_says(test.only(), "lies 0.50 mm further upstream of where");
+  test.place.across_misfit = -2.0e-3;
+  expect_says(test.only(), "0.50 mm further upstream and 2.00 mm to one side");
+  test.place.along_misfit = 0.0;
+  expect_says(test.only(), "lies 2.00 mm to one side");
+  // Said once, though the ends of the wall tell it, too.
+  test.reduced.offset = maps::MapShift{0.4 * mm, 1.0 * um};
+  EXPECT_EQ(test.doubts().size(), 1u);
+}
+
+TEST(FindDoubts, OfTheWallsEndsTellAnOriginThatIsOffByLess) {
+  CleanCase test;
+  test.reduced.grid = {1024, 192, 16.0 * um, 16.0 * um};
+  test.reduced.offset = maps::MapShift{15.0 * um, 1.0 * um};  // within 1 % of the width
+  EXPECT_TRUE(test.doubts().empty());
+  test.reduced.offset = maps::MapShift{100.0 * um, 1.0 * um};
+  expect_says(test.only(), "0.100 mm further downstream");
+  expect_says(test.only(), "channel.origin");
+  test.reduced.offset = maps::MapShift{100.0 * um, 30.0 * um};  // may be nothing
+  EXPECT_TRUE(test.doubts().empty());
+}
+
+TEST(FindDoubts, OfTheWallsSidesTellOffsetAndRotationApart) {
+  CleanCase test;
+  test.reduced.grid = {1024, 192, 16.0 * um, 16.0 * um};
+  test.reduced.centre = maps::CentreLine{30.0 * um, 0.003};
+  EXPECT_TRUE(test.doubts().empty());  // within 2 % of the width, at the ends, too
+  test.reduced.centre->offset = -100.0 * um;
+  expect_says(test.only(), "0.100 mm to one side");
+  test.reduced.centre = maps::CentreLine{Length{}, 0.01};
+  const std::string doubt = test.only();
+  expect_says(doubt, "askew by 0.57 deg");
+  expect_says(doubt, "channel.rotation");
+}
+
+TEST(FindDoubts, OfARimThatBendsFromMapToMapTellHowFar) {
+  CleanCase test;
+  for (auto& map : test.reduced.hydrostatic) map.condition.bend.at_middle_uncertainty = 2.0 * nm;
+  test.reduced.flow[0].condition.bend.at_middle_uncertainty = 2.0 * nm;
+  test.reduced.hydrostatic[1].condition.bend.at_middle = 8.0 * nm;  // 6 nm off the mean: 3 sigma
+  EXPECT_TRUE(test.doubts().empty());
+  test.reduced.hydrostatic[1].condition.bend.at_middle = 100.0 * nm;
+  const std::string doubt = test.only();
+  expect_says(doubt, "bends from map to map: by up to 75.0 nm (u = 2.0 nm)");
+  expect_says(doubt, "--level-order 2");
+  test.reduced.level_order = 2;  // it was subtracted
+  EXPECT_TRUE(test.doubts().empty());
+}
+
+TEST(FindDoubts, OfARimThatIsBentAlikeInAllMapsTellWhatItDoesToQr) {
+  CleanCase test;
+  const auto bend_all = [&](Length bend) {
+    for (auto* maps : {&test.reduced.hydrostatic, &test.reduced.flow}) {
+      for (auto& map : *maps) {
+        map.condition.bend.at_middle = bend;
+        map.condition.bend.at_middle_uncertainty = 2.0 * nm;
+      }
+    }
+  };
+  bend_all(400.0 * nm);  // the height itself is known to 500 nm
+  EXPECT_TRUE(test.doubts().empty());
+  bend_all(700.0 * nm);
+  const std::string doubt = test.only();
+  expect_says(doubt, "alike in all maps: by 700 nm");
+  expect_says(doubt, "makes QR 1.2 % too small");  // 3 x 0.7 um of 175 um
+  bend_all(-700.0 * nm);
+  expect_says(test.only(), "too large");
+  test.experiment.channel.height_uncertainty = 1.0 * um;
+  EXPECT_TRUE(test.doubts().empty());
+}
+
+TEST(FindDoubts, OfFalseFringeOrdersThatStayTellHowMuchIsLeftOut) {
+  CleanCase test;
+  test.reduced.grid = {100, 50, 16.0 * um, 16.0 * um};
+  test.reduced.hydrostatic[0].condition.fringe.flagged_pixels = 5;  // single noisy ones
+  EXPECT_TRUE(test.doubts().empty());
+  test.reduced.hydrostatic[1].condition.fringe.flagged_pixels = 60;
+  test.reduced.flow[0].condition.fringe.flagged_pixels = 55;
+  const std::string doubt = test.only();
+  expect_says(doubt, "2 maps have patches of a false fringe order");
+  expect_says(doubt, "up to 1.2 %");
 }
 
 TEST(FindDoubts, OfMapsTellHowManyAndHowBad) {

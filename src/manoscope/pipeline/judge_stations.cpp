@@ -27,11 +27,12 @@ Array1 masked(const Array1& values, const Flags1& counts) {
 }
 
 void add_split(const validation::ErrorSplit* split, Index n, RunStations& stations) {
-  const validation::ErrorSplit none{Flags1::Zero(n), {}, {}, {}, {}, {}};
+  const validation::ErrorSplit none{Flags1::Zero(n), {}, {}, {}, {}, {}, {}};
   const validation::ErrorSplit& parts = split != nullptr ? *split : none;
   const auto add = [&](const char* name, const Array1& values) {
     stations.columns.push_back({name, masked(values, parts.split)});
   };
+  add("neighbourhood_Pa", parts.neighbourhood);
   add("label_error_Pa", parts.labels);
   add("map_error_Pa", parts.maps);
   add("curve_shape_error_Pa", parts.curve_shape);

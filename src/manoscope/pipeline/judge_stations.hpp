@@ -22,9 +22,9 @@ struct StationColumn {
 ///
 /// Columns: x_m, in_section, pressure_Pa, true_pressure_Pa, error_Pa, uncertainty_Pa, pull,
 /// covered, deflection_m, true_deflection_m, deflection_error_m, deflection_uncertainty_m; then the
-/// error by its origin: label_error_Pa, map_error_Pa, curve_shape_error_Pa, locality_error_Pa,
-/// curve_shape_and_locality_error_Pa (ErrorSplit). All stations; in_section is 1 where judge()
-/// counts. The columns are always there.
+/// error by its origin: neighbourhood_Pa, label_error_Pa, map_error_Pa, curve_shape_error_Pa,
+/// locality_error_Pa, curve_shape_and_locality_error_Pa (ErrorSplit). All stations; in_section is 1
+/// where judge() counts. The columns are always there.
 struct RunStations {
   std::string run;
   std::vector<StationColumn> columns;

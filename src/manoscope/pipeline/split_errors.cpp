@@ -155,8 +155,10 @@ SplitJudgement split_errors(const Measurement& m, const twin::Truth& truth,
     const twin::RunTruth& run = find_truth(truth, m.run[static_cast<std::size_t>(r)]);
     validation::SplitInput input;
     input.pressure = m.pressure.row(r);
+    input.local_pressure = m.pressure_local.row(r);
     input.deflection = m.deflection.row(r);
     input.answered = answers(answers(everywhere, input.pressure), input.deflection);
+    input.answered = answers(input.answered, input.local_pressure);
     input.true_pressure = interpolate(truth.x, run.pressure, m.x);
     input.true_deflection = interpolate(truth.x, run.deflection, m.x);
     RunSplit split{run.run, validation::split_error(input, curves), {}};

@@ -57,7 +57,7 @@ TEST(SplitErrors, AddUpToTheErrorOfTheResult) {
     for (Index i = 0; i < m.x.size(); ++i) {
       if (s.split[i] == 0) continue;
       // Round-off of 20 kPa in four differences.
-      EXPECT_NEAR(s.labels[i] + s.maps[i] + s.curve_shape[i] + s.locality[i],
+      EXPECT_NEAR(s.neighbourhood[i] + s.labels[i] + s.maps[i] + s.curve_shape[i] + s.locality[i],
                   m.pressure(r, i) - expected[i], 1e-10);
     }
     // The curves fitted again are those of the measurement, and truth answers all over the section.

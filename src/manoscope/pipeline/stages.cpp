@@ -12,6 +12,7 @@
 #include "manoscope/io/map_address.hpp"
 #include "manoscope/io/read_ahead.hpp"
 #include "manoscope/io/reader.hpp"
+#include "manoscope/maps/camera_window.hpp"
 #include "manoscope/pipeline/file_warnings.hpp"
 
 namespace manoscope::pipeline {
@@ -19,23 +20,42 @@ namespace {
 
 using experiment::Experiment;
 
-/// A map of the experiment, the instrument's own reference subtracted where one is named.
+/// A map of the experiment in the camera window of the first one, the instrument's own reference
+/// subtracted where one is named.
+///
+/// Files that name no window count as of the window at (0, 0): maps of other sizes without any
+/// window are left for require_same_grid() to refuse.
 class MapSource {
  public:
   explicit MapSource(const Experiment& experiment) : options_(reading_options(experiment)) {
+    const io::LoadedMap first = io::load_height_map(experiment.hydrostatic.front().map, options_);
+    window_ = {first.map.grid(), first.offset_x, first.offset_y};
     const auto& instrument = experiment.instrument;
-    if (instrument.reference) reference_ = io::read_height_map(*instrument.reference, options_);
+    if (instrument.reference) {
+      reference_ = in_window(io::load_height_map(*instrument.reference, options_),
+                             instrument.reference->string());
+    }
   }
   HeightMap read(const std::filesystem::path& path,
                  std::vector<std::string>* warnings = nullptr) const {
     io::LoadedMap loaded = io::load_height_map(path, options_);
     if (warnings != nullptr) *warnings = std::move(loaded.warnings);
-    return reference_ ? maps::subtract_reference(loaded.map, *reference_, path.string())
-                      : std::move(loaded.map);
+    HeightMap map = in_window(std::move(loaded), path.string());
+    return reference_ ? maps::subtract_reference(map, *reference_, path.string()) : std::move(map);
   }
 
  private:
+  HeightMap in_window(io::LoadedMap loaded, const std::string& name) const {
+    const bool named = loaded.offset_x != 0 || loaded.offset_y != 0 || window_.offset_x != 0 ||
+                       window_.offset_y != 0;
+    const bool same = loaded.map.grid() == window_.grid && loaded.offset_x == window_.offset_x &&
+                      loaded.offset_y == window_.offset_y;
+    if (!named || same) return std::move(loaded.map);
+    return maps::into_window(loaded.map, loaded.offset_x, loaded.offset_y, window_, name);
+  }
+
   io::ReadOptions options_;
+  maps::CameraWindow window_;
   std::optional<HeightMap> reference_;
 };
 
@@ -143,8 +163,11 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   result.hydrostatic.assign(std::make_move_iterator(reduced.begin()),
                             std::make_move_iterator(split));
   result.flow.assign(std::make_move_iterator(split), std::make_move_iterator(reduced.end()));
-  result.offset =
-      maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width, options);
+  // A place that was found to half a pixel is made finer by the ends of all walls; one that was
+  // given is the user's, and doubted if they contradict it.
+  const bool place_was_found = !experiment.channel.origin;
+  result.offset = maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width,
+                                      options, place_was_found);
   return result;
 }
 

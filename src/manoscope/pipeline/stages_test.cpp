@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
+#include "manoscope/io/test_instrument_files.hpp"
+#include "manoscope/maps/camera_window.hpp"
 #include "manoscope/pipeline/test_experiment.hpp"
 
 namespace manoscope::pipeline {
@@ -98,6 +101,118 @@ TEST(ReduceMaps, KeepsTheOrderOfTheLists) {
   EXPECT_EQ(levels[3].name, "h03.gsf");
   EXPECT_EQ(levels[0].uncertainty, Pressure{});  // vented
   EXPECT_EQ(levels[3].uncertainty, 10.0 * Pa);
+}
+
+/// The map as Zygo MetroPro would have saved it through a window of the camera; of square pixels.
+std::string zygo_file(const HeightMap& map, Index offset_x, Index offset_y) {
+  io::testing::ZygoDat file;
+  file.n_buckets = 0;
+  file.phase_resolution = 2;
+  file.lateral_resolution = static_cast<float>(map.grid().pitch_x.si());
+  constexpr double kStep = 632.8e-9 * 0.5 / 131072.0;  // m, as the fixture's header says
+  constexpr std::int32_t kMissing = 2147483640;
+  file.phases.clear();
+  for (Index i = 0; i < map.height().size(); ++i) {
+    file.phases.push_back(map.flags().data()[i] != 0 ? kMissing
+                                                     : static_cast<std::int32_t>(std::lround(
+                                                           map.height().data()[i] / kStep)));
+  }
+  const auto word = [](Index value) {
+    return io::testing::big(static_cast<std::uint64_t>(value), 2);
+  };
+  std::string bytes = file.bytes();
+  io::testing::put(bytes, 64,
+                   word(offset_x) + word(offset_y) + word(map.grid().nx) + word(map.grid().ny) +
+                       io::testing::big(4 * file.phases.size(), 4));
+  return bytes;
+}
+
+/// Another window on the same pixels: `right` and `down` of the first one, missing beyond it.
+HeightMap through_window(const HeightMap& map, Index right, Index down, Index nx, Index ny) {
+  return maps::into_window(map, 0, 0,
+                           {{nx, ny, map.grid().pitch_x, map.grid().pitch_y}, right, down}, "a");
+}
+
+TEST(ReduceMaps, LayMapsOfOtherCameraWindowsPixelOnPixel) {
+  twin::Scenario scenario = small_scenario();
+  scenario.camera.n_across = 39;  // pixels of 64 um both ways, as the format has one size only
+  TestExperiment test(scenario);
+  const auto experiment = test.read();
+  const auto write_as_zygo = [&](const std::string& name, const HeightMap& map, Index x, Index y) {
+    std::ofstream(test.folder() / name, std::ios::binary) << zygo_file(map, x, y);
+  };
+  constexpr Index kX = 20, kY = 10;
+  for (const auto& map : test.twin.maps) write_as_zygo(map.name, map.map, kX, kY);
+  const ReducedExperiment same = reduce(experiment);
+  // One of the same size, three columns on; one smaller; one larger.
+  const Index nx = same.grid.nx, ny = same.grid.ny;
+  write_as_zygo("h03.gsf", through_window(test.map("h03.gsf"), 3, 0, nx, ny), kX + 3, kY);
+  write_as_zygo("h05.gsf", through_window(test.map("h05.gsf"), 2, 1, nx - 4, ny - 2), kX + 2,
+                kY + 1);
+  write_as_zygo("f01.gsf", through_window(test.map("f01.gsf"), -5, -4, nx + 9, ny + 6), kX - 5,
+                kY - 4);
+  const ReducedExperiment other = reduce(experiment);
+  EXPECT_EQ(other.grid, same.grid);
+  const auto expect_same = [](const maps::ReducedMap& a, const maps::ReducedMap& b) {
+    SCOPED_TRACE(a.condition.name);
+    Index n = 0;
+    for (Index ix = 0; ix < a.profile.x.size(); ++ix) {
+      if (a.profile.flags[ix] != 0 || b.profile.flags[ix] != 0) continue;
+      ++n;
+      // What the missing border changes is the plane of the rim: within its own uncertainty.
+      EXPECT_NEAR(a.profile.zeta[ix], b.profile.zeta[ix],
+                  3.0 * a.profile.uncertainty.standard()[ix]);
+    }
+    EXPECT_GT(n, 200);
+    EXPECT_NEAR(a.condition.shift.shift.si(), b.condition.shift.shift.si(), 2e-6);
+  };
+  expect_same(same.hydrostatic[3], other.hydrostatic[3]);
+  expect_same(same.hydrostatic[5], other.hydrostatic[5]);
+  expect_same(same.flow[1], other.flow[1]);
+  EXPECT_GT(other.hydrostatic[3].condition.missing, same.hydrostatic[3].condition.missing);
+}
+
+TEST(ReduceMaps, RefuseMapsOfAnotherSizeThatNameNoWindow) {
+  TestExperiment test;
+  test.map("h03.gsf") = through_window(test.map("h03.gsf"), 2, 1, 250, 60);
+  const auto experiment = test.read();
+  EXPECT_THROW(static_cast<void>(reduce(experiment)), InputError);
+}
+
+/// Middle between the two places at which a profile passes half of its greatest deflection.
+double middle_of(const Profile& profile) {
+  const double half = 0.5 * profile.zeta.maxCoeff();
+  double first = 0.0, last = 0.0;
+  for (Index ix = 0; ix + 1 < profile.x.size(); ++ix) {
+    const double here = profile.zeta[ix] - half, next = profile.zeta[ix + 1] - half;
+    if (here * next > 0.0 || here == next) continue;
+    const double x = profile.x[ix] + (profile.x[ix + 1] - profile.x[ix]) * here / (here - next);
+    if (first == 0.0) first = x;
+    last = x;
+  }
+  return 0.5 * (first + last);
+}
+
+TEST(ReduceMaps, CountXFromTheWallsOwnEndsWhereThePlaceIsFound) {
+  twin::Scenario scenario = small_scenario();
+  scenario.camera.n_along = 640;  // coarser ones show too little of the wall's ends
+  TestExperiment test(scenario);
+  test.leave_out_place();
+  const auto experiment = test.read();
+  const ChannelFrame frame = place_channel(experiment).frame;
+  for (const double pixels : {-0.4, 0.0, 0.4}) {
+    // As if other two maps had been the ones that the place is found from.
+    ChannelFrame moved = frame;
+    moved.origin_x += pixels * 25.5 * um;
+    const ReducedExperiment reduced = reduce_maps(experiment, moved, {}, 1, {});
+    ASSERT_TRUE(reduced.offset);
+    EXPECT_EQ(reduced.offset->shift, Length{});
+    // Uniform pressure: the same to both ends. Noise, and a straight line over a pixel of a bent
+    // flank, miss the half by a fifth of a pixel; the frames lie 0.4 pixels apart.
+    for (const std::size_t k : {8U, 12U, 16U}) {
+      EXPECT_NEAR(middle_of(reduced.hydrostatic[k].profile), 7.75e-3, 5e-6) << pixels << ' ' << k;
+    }
+  }
 }
 
 TEST(PlaceChannel, IsFoundWithinAPixelOfTheTruth) {

@@ -25,6 +25,7 @@ struct JudgedRunCase {
     m.test_section << 2e-3, 8e-3;
     m.pressure = (1003.0 - 1e5 * m.x).matrix().transpose().array();
     m.pressure(0, 2) += 2.0;
+    m.pressure_local = m.pressure;
     m.pressure_uncertainty = Array2::Constant(1, 11, 2.0);
     m.pressure_lower = m.pressure - 4.0;
     m.pressure_upper = m.pressure + 4.0;

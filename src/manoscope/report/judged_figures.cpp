@@ -67,6 +67,8 @@ std::vector<Part> parts_of(const JudgedRun& run) {
   } else {
     add(run.curve_shape_and_locality, "shape and locality", kPurple, "dt 2");
   }
+  if ((run.neighbourhood.isNaN() || run.neighbourhood == 0.0).all()) return parts;
+  add(run.neighbourhood, "neighbourhood", kGrey, "dt 4");
   return parts;
 }
 

@@ -14,7 +14,7 @@ namespace manoscope::report {
 struct JudgedRun {
   double x_start = 0.0, x_end = 0.0;         ///< m, the stretch that is judged; NaN: none
   Array1 true_pressure;                      ///< Pa
-  Array1 labels, maps;                       ///< Pa, parts of the error; empty: not told
+  Array1 neighbourhood, labels, maps;        ///< Pa, parts of the error; empty: not told
   Array1 curve_shape, locality;              ///< Pa; empty: known as one sum, or not told
   Array1 curve_shape_and_locality;           ///< Pa
   double coverage_68 = 0.0, coverage = 0.0;  ///< shares of the stations in the stretch

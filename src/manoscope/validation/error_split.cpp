@@ -42,11 +42,13 @@ ErrorSplit split_error(const SplitInput& run, const SplitCurves& curves) {
   }
   MANO_ASSERT(curves.exact.empty() || static_cast<Index>(curves.exact.size()) == n);
   MANO_ASSERT(run.pressure.size() == n && run.deflection.size() == n);
+  MANO_ASSERT(run.local_pressure.size() == n);
   MANO_ASSERT(run.true_pressure.size() == n && run.true_deflection.size() == n);
   const bool is_exact = !curves.exact.empty();
   ErrorSplit result;
   result.split = Flags1::Zero(n);
-  result.labels = result.maps = result.curve_shape_and_locality = Array1::Zero(n);
+  result.neighbourhood = result.labels = result.maps = Array1::Zero(n);
+  result.curve_shape_and_locality = Array1::Zero(n);
   if (is_exact) result.curve_shape = result.locality = Array1::Zero(n);
   for (Index ix = 0; ix < n; ++ix) {
     if (run.answered[ix] == 0) continue;
@@ -54,7 +56,7 @@ ErrorSplit split_error(const SplitInput& run, const SplitCurves& curves) {
     const auto relabelled = read(curves.relabelled, ix, run.deflection[ix]);
     const auto ideal = read(curves.true_curves, ix, run.true_deflection[ix]);
     if (!again || !relabelled || !ideal) continue;
-    if (std::abs(*again - run.pressure[ix]) > kSameReading) continue;
+    if (std::abs(*again - run.local_pressure[ix]) > kSameReading) continue;
     if (is_exact) {
       const auto still =
           curves.exact[static_cast<std::size_t>(ix)].pressure(run.true_deflection[ix]);
@@ -63,7 +65,8 @@ ErrorSplit split_error(const SplitInput& run, const SplitCurves& curves) {
       result.locality[ix] = *still - run.true_pressure[ix];
     }
     result.split[ix] = 1;
-    result.labels[ix] = run.pressure[ix] - *relabelled;
+    result.neighbourhood[ix] = run.pressure[ix] - run.local_pressure[ix];
+    result.labels[ix] = run.local_pressure[ix] - *relabelled;
     result.maps[ix] = *relabelled - *ideal;
     result.curve_shape_and_locality[ix] = *ideal - run.true_pressure[ix];
   }
@@ -80,11 +83,12 @@ SplitSummary summarise(const ErrorSplit& split, const Flags1& inside, const Flag
     counts[i] = split.split[i];
     ++(split.split[i] != 0 ? summary.n_split : summary.n_left_out);
   }
+  summary.neighbourhood = summarise_part(split.neighbourhood, counts);
   summary.labels = summarise_part(split.labels, counts);
   summary.maps = summarise_part(split.maps, counts);
   summary.curve_shape_and_locality = summarise_part(split.curve_shape_and_locality, counts);
-  summary.total =
-      summarise_part(split.labels + split.maps + split.curve_shape_and_locality, counts);
+  summary.total = summarise_part(
+      split.neighbourhood + split.labels + split.maps + split.curve_shape_and_locality, counts);
   if (split.locality.size() > 0) {
     summary.curve_shape = summarise_part(split.curve_shape, counts);
     summary.locality = summarise_part(split.locality, counts);

@@ -54,6 +54,7 @@ struct Case {
       run.pressure[i] =
           curves.measured.curves[static_cast<std::size_t>(i)]->pressures(run.deflection[i])[0];
     }
+    run.local_pressure = run.pressure;
   }
 };
 
@@ -98,6 +99,19 @@ TEST(ErrorSplit, GivesToLocalityWhatTheStaticWallDoesNotExplain) {
   EXPECT_TRUE((split.curve_shape == before.curve_shape).all());
 }
 
+TEST(ErrorSplit, TellsApartWhatHeedingTheNeighboursChanged) {
+  Case test(10.0, 20e-9);
+  const ErrorSplit before = split_error(test.run, test.curves);
+  EXPECT_EQ(before.neighbourhood.abs().maxCoeff(), 0.0);
+  test.run.pressure += Array1::LinSpaced(40, -3.0, 5.0);
+  const ErrorSplit split = split_error(test.run, test.curves);
+  EXPECT_LT((split.neighbourhood - Array1::LinSpaced(40, -3.0, 5.0)).abs().maxCoeff(), 1e-10);
+  EXPECT_TRUE((split.labels == before.labels).all());
+  const Array1 sum =
+      split.neighbourhood + split.labels + split.maps + split.curve_shape + split.locality;
+  EXPECT_LT((sum - test.run.pressure + test.run.true_pressure).abs().maxCoeff(), 1e-10);
+}
+
 TEST(ErrorSplit, GivesOneSumWhereTheComplianceIsUnknown) {
   Case test(10.0, 20e-9);
   const ErrorSplit known = split_error(test.run, test.curves);
@@ -114,9 +128,10 @@ TEST(ErrorSplit, GivesOneSumWhereTheComplianceIsUnknown) {
 TEST(ErrorSplit, LeavesOutStationsThatAnyReadingCannotAnswer) {
   Case test(10.0, 20e-9);
   test.run.answered[3] = 0;
-  test.run.pressure[3] = test.run.deflection[3] = kNan;  // a NaN that is compared traps
-  test.run.true_deflection[5] = 1.0;                     // beyond every level
-  test.run.pressure[7] += 1.0;                           // not what these curves give
+  test.run.pressure[3] = test.run.local_pressure[3] = test.run.deflection[3] =
+      kNan;                           // a NaN that is compared traps
+  test.run.true_deflection[5] = 1.0;  // beyond every level
+  test.run.local_pressure[7] += 1.0;  // not what these curves give
   test.curves.relabelled.curves[9].reset();
   const ErrorSplit split = split_error(test.run, test.curves);
   for (const Index i : {3, 5, 7, 9}) {
