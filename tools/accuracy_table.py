@@ -146,7 +146,7 @@ def scenario_tables(program, work):
                   f"| {paper[0]}-{paper[1]} | {reynolds} " if paper else
                   f"| - | {largest:.1f} um | - | - | {reynolds} ")
         table_one.append(f"| {name} {beside}| {max(run['speed_index'] for run in made):.2f} "
-                         f"| {slope:.3f} ± {uncertainty:.3f} | {'1/3' if name in NITRIDE else '-'} |")
+                         f"| {slope:.4f} ± {uncertainty:.4f} | {'1/3' if name in NITRIDE else '-'} |")
     return errors + [""], table_one + [""], faults
 
 
