@@ -20,7 +20,7 @@ void add_formats(Program& program) {
                         {"extensions", reader->extensions()},
                         {"orientation", reader->orientation()}});
       } else {
-        text += fmt::format("{:<10} {:<26} {}\n", reader->name(),
+        text += fmt::format("{:<15} {:<26} {}\n", reader->name(),
                             fmt::format("{}", fmt::join(reader->extensions(), " ")),
                             reader->description());
       }

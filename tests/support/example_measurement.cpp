@@ -260,6 +260,7 @@ void add_maps(Measurement& m, const ExampleSize& size) {
   const auto n_m = static_cast<Index>(m.map.size());
   m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n_m);
   m.map_shift = m.map_shift_uncertainty = m.map_shift_across = m.map_rotation = Array1(n_m);
+  m.map_shift_across_uncertainty = m.map_rotation_uncertainty = m.map_unmended = Array1(n_m);
   m.map_mended = m.map_rim_bend = m.map_rim_bend_uncertainty = Array1(n_m);
   for (Index map = 0; map < n_m; ++map) {
     m.map_tilt_x(map) = 3e-5 * noise.normal();
@@ -270,7 +271,10 @@ void add_maps(Measurement& m, const ExampleSize& size) {
     m.map_shift(map) = noise.uniform(-8e-6, 8e-6);
     m.map_shift_uncertainty(map) = 0.3e-6;
     m.map_shift_across(map) = noise.uniform(-8e-6, 8e-6);
+    m.map_shift_across_uncertainty(map) = 0.4e-6;
     m.map_rotation(map) = 1e-4 * noise.normal();
+    m.map_rotation_uncertainty(map) = 5e-5;
+    m.map_unmended(map) = noise.uniform(0.0, 0.0005);
     m.map_mended(map) = noise.uniform(0.0, 0.002);
     m.map_rim_bend(map) = 1e-9 * noise.normal();
     m.map_rim_bend_uncertainty(map) = 1e-9;

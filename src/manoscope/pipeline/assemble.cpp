@@ -176,6 +176,7 @@ void store_map_conditions(const ReducedExperiment& reduced, results::Measurement
   const auto n = static_cast<Index>(conditions.size());
   m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n);
   m.map_shift = m.map_shift_uncertainty = m.map_shift_across = m.map_rotation = Array1(n);
+  m.map_shift_across_uncertainty = m.map_rotation_uncertainty = m.map_unmended = Array1(n);
   m.map_mended = m.map_rim_bend = m.map_rim_bend_uncertainty = Array1(n);
   for (Index i = 0; i < n; ++i) {
     const maps::MapCondition& condition = *conditions[static_cast<std::size_t>(i)];
@@ -189,8 +190,12 @@ void store_map_conditions(const ReducedExperiment& reduced, results::Measurement
     m.map_shift_uncertainty[i] = condition.shift.uncertainty.si();
     m.map_shift_across[i] = condition.placement.offset.si();
     m.map_rotation[i] = condition.placement.slope;
-    m.map_mended[i] = static_cast<double>(condition.fringe.mended_pixels) /
-                      static_cast<double>(reduced.grid.nx * reduced.grid.ny);
+    const auto& centre = condition.centre;
+    m.map_shift_across_uncertainty[i] = centre ? centre->offset_uncertainty.si() : kNan;
+    m.map_rotation_uncertainty[i] = centre ? centre->slope_uncertainty : kNan;
+    const auto n_pixels = static_cast<double>(reduced.grid.nx * reduced.grid.ny);
+    m.map_mended[i] = static_cast<double>(condition.fringe.mended_pixels) / n_pixels;
+    m.map_unmended[i] = static_cast<double>(condition.fringe.flagged_pixels) / n_pixels;
     m.map_rim_bend[i] = condition.bend.at_middle.si();
     m.map_rim_bend_uncertainty[i] = condition.bend.at_middle_uncertainty.si();
   }

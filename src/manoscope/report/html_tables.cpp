@@ -227,27 +227,31 @@ std::string maps_table(const Measurement& m) {
             cell(escape_html(percent_text(m.map_missing(map)))) +
             cell(escape_html(percent_text(m.map_spikes(map)))) +
             cell(escape_html(percent_text(m.map_mended(map)))) +
+            cell(escape_html(percent_text(m.map_unmended(map)))) +
             cell(number_text(1e6 * m.map_shift(map), 2)) +
             cell(number_text(1e6 * m.map_shift_uncertainty(map), 2)) +
             cell(number_text(1e6 * m.map_shift_across(map), 2)) +
+            cell(number_text(1e6 * m.map_shift_across_uncertainty(map), 2)) +
             cell(number_text(m.map_rotation(map) * 180.0 / std::numbers::pi, 2)) +
+            cell(number_text(m.map_rotation_uncertainty(map) * 180.0 / std::numbers::pi, 2)) +
             cell(number_text(1e9 * m.map_rim_bend(map), 2)) +
             cell(number_text(1e9 * m.map_rim_bend_uncertainty(map), 1)) + "</tr>\n";
   }
   return table(
       "What each map was like, seen on the rigid rim: slope of its plane along and across the "
       "flow, standard deviation of one pixel; pixels left out, and pixels of a false fringe order, "
-      "mended. The shift along the flow that was found at the ends of the wall and taken back, "
-      "with "
-      "its standard uncertainty; shift across and rotation found at its sides and taken back where "
-      "they count; bend of the rim beyond its plane, at mid-channel, with its standard "
+      "mended or, where that failed, left out. The shift along the flow that was found at the ends "
+      "of the wall and taken back, with its standard uncertainty; shift across and rotation found "
+      "at its sides and taken back where they count, with theirs; bend of the rim beyond its "
+      "plane, at mid-channel, with its standard "
       "uncertainty.",
       column_head("Map") + column_head("Tilt along (µm/mm)") + column_head("Tilt across (µm/mm)") +
           column_head(fmt::format("Noise ({})", noise.name)) + column_head("Missing") +
-          column_head("Spikes") + column_head("Mended") + column_head("Shift (µm)") +
-          column_head("u(shift) (µm)") + column_head("Shift across (µm)") +
-          column_head("Rotation (°)") + column_head("Bend of the rim (nm)") +
-          column_head("u(bend) (nm)"),
+          column_head("Spikes") + column_head("Mended") + column_head("Not mended") +
+          column_head("Shift (µm)") + column_head("u(shift) (µm)") +
+          column_head("Shift across (µm)") + column_head("u(across) (µm)") +
+          column_head("Rotation (°)") + column_head("u(rotation) (°)") +
+          column_head("Bend of the rim (nm)") + column_head("u(bend) (nm)"),
       body, m.map.size() > 14);
 }
 

@@ -80,8 +80,11 @@ struct Measurement {
   Array1 map_missing, map_spikes;           ///< (n_m) fraction of the pixels
   Array1 map_shift, map_shift_uncertainty;  ///< (n_m) m, along the flow, taken back
   Array1 map_shift_across;                  ///< (n_m) m, taken back
+  Array1 map_shift_across_uncertainty;      ///< (n_m) m, standard; NaN where the wall does not show
   Array1 map_rotation;                      ///< (n_m) rad, taken back
+  Array1 map_rotation_uncertainty;          ///< (n_m) rad, standard; NaN likewise
   Array1 map_mended;                        ///< (n_m) fraction of pixels of a false fringe order
+  Array1 map_unmended;                      ///< (n_m) fraction of such pixels, left out
   Array1 map_rim_bend, map_rim_bend_uncertainty;  ///< (n_m) m, at mid-channel
 
   // What the wall did between the lowest and the highest pressure: where the channel was taken to
