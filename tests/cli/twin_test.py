@@ -104,8 +104,9 @@ outlet_pressure = "300 Pa"
             told = process.communicate(timeout=60)[1]
             self.assertEqual(process.returncode, 130, told)
             self.assertIn("nothing was half-written", told)
-            # Under a second where nothing else runs: one factorisation, of 0.3 s.
-            self.assertLess(time.monotonic() - sent, 5.0)
+            # Under a second where nothing else runs: one factorisation, of 0.3 s. The whole work
+            # would take minutes; a crowded machine stretches either.
+            self.assertLess(time.monotonic() - sent, 30.0)
             self.assertFalse(out.exists())
 
     def test_another_seed_is_another_experiment(self):
@@ -172,7 +173,7 @@ outlet_pressure = "300 Pa"
         self.assertLess(abs(sum(run_["pull_mean"] for run_ in runs)) / len(runs), 0.6)
 
     def check_split(self, judged, table):
-        parts = ("label_error_Pa", "map_error_Pa", "curve_shape_error_Pa", "locality_error_Pa")
+        parts = ("neighbourhood_Pa", "label_error_Pa", "map_error_Pa", "curve_shape_error_Pa", "locality_error_Pa")
         n_split = {}
         with open(table, newline="") as rows:
             for row in csv.DictReader(rows):
@@ -191,6 +192,7 @@ outlet_pressure = "300 Pa"
             self.assertGreater(split["labels"]["rms_error_Pa"], 1.0)
             # The clamped wall feels its neighbourhood: pascals inside, tens at the section's edge.
             self.assertGreater(split["locality"]["largest_error_Pa"], 1.0)
+            self.assertGreater(split["neighbourhood"]["largest_error_Pa"], 1.0)
             self.assertLess(split["locality"]["largest_error_Pa"], 100.0)
             self.assertEqual(len(run_["stations"]["x_m"]), len(run_["stations"]["map_error_Pa"]))
 

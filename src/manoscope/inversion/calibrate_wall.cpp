@@ -14,6 +14,7 @@ namespace {
 
 /// The strip's law is a model: each pressure may be off it by this share, and by 1 Pa.
 constexpr double kLawError = 1e-3, kLeastError = 1.0;
+constexpr double kWorstFit = 1e3;     // chi-square per degree of freedom: off by 3 % of p
 constexpr double kSoft = 1e8;         // Pa, between elastomers and stiff walls
 constexpr double kShears = 0.02;      // thickness over width
 constexpr double kWindow = 0.3;       // half of it, in widths
@@ -98,6 +99,13 @@ std::optional<CalibratedWall> calibrate_wall(const calibration::ConstitutiveCurv
     options.youngs_modulus_range =
         wall::PressureRange{(1.0 / kReach) * start.youngs_modulus, kReach * start.youngs_modulus};
     const wall::LawFit fit = wall::fit_law(wall::LawKind::plate_strip, start, middle, options);
+    const wall::FitParameter* modulus = fit.find("youngs_modulus");
+    if (!fit.converged || modulus == nullptr || modulus->at_bound ||
+        fit.chi2 > kWorstFit * static_cast<double>(fit.n_dof)) {
+      reason = fmt::format("no clamped strip answers as mid-channel did: E would be {:.2g} Pa",
+                           fit.section.youngs_modulus.si());
+      return std::nullopt;
+    }
     CalibratedWall found;
     found.wall.length = known.length;
     found.wall.width = known.width;

@@ -20,7 +20,7 @@ using Vector = Eigen::VectorXd;
 constexpr double kEndGap = 0.08;      // widths: nearer stations do not take part
 constexpr double kCorrelation = 0.3;  // widths, of errors of curves and model along x
 constexpr double kEndZone = 0.5;      // widths, where p may bend more sharply
-constexpr double kFirstRipple = 0.6;  // widths, before the kernel is known
+constexpr double kEndShare = 0.35;    // half-response wavelengths: the same, of walls of long reach
 constexpr int kMostIterations = 10, kFreeIterations = 4;
 constexpr double kStepShare = 0.05;  // of the local reading's mean standard uncertainty
 constexpr double kHuber = 2.5;       // pulls beyond count as if they grew no more (Huber 1964)
@@ -48,6 +48,20 @@ Array1 effect_of(const PressureReading& reading, const std::string& source) {
   return squares.sqrt();
 }
 
+/// How far the model's curve lies off the measured one about each reading, Pa.
+Array1 offset_of_curves(const PressureReading& local, const NonlocalWall& wall) {
+  const Array1& levels = wall.level_pressure;
+  Array1 offset = Array1::Zero(local.x.size());
+  for (Index i = 0; i < local.x.size(); ++i) {
+    if (!local.answered(i)) continue;
+    const Index above =
+        std::upper_bound(levels.begin(), levels.end(), local.pressure[i]) - levels.begin();
+    const Index k = std::clamp<Index>(above, 1, levels.size() - 1);
+    offset[i] = std::max(std::abs(wall.curve_offset(k - 1, i)), std::abs(wall.curve_offset(k, i)));
+  }
+  return offset;
+}
+
 class Reader {
  public:
   Reader(const PressureReading& local, const NonlocalWall& wall, const ReadNonlocalOptions& options)
@@ -62,7 +76,8 @@ class Reader {
         sampling_(spline_.sampling(local.x)),
         inner_sampling_(inner_.sampling(local.x)),
         interpolation_(effect_of(local, "interpolation")),
-        labels_(effect_of(local, "pressure labels")) {
+        labels_(effect_of(local, "pressure labels")),
+        offset_(offset_of_curves(local, wall)) {
     for (Index i = 0; i < local.x.size(); ++i) {
       const double distance = std::min(local.x[i], length_ - local.x[i]);
       if (local.answered(i) && distance > kEndGap * width_) used_.push_back(i);
@@ -71,7 +86,8 @@ class Reader {
     const Array1 standard = local.uncertainty.standard();
     for (const Index i : used_) enough_ += kStepShare * standard[i];
     enough_ /= std::max(1.0, static_cast<double>(used_.size()));
-    for (const double sharper : {0.0, 1e1, 1e2, 1e3, 1e4, 1e5}) penalties_.push_back(bend(sharper));
+    for (const double sharper : {0.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6})
+      penalties_.push_back(bend(sharper));
   }
 
   bool enough() const { return static_cast<Index>(used_.size()) >= kFewestStations; }
@@ -80,7 +96,7 @@ class Reader {
     const Index n = nodes_.size();
     WallResponse::Answer answer{start(), Matrix::Identity(n, n)};
     Vector pressure = answer.reading;
-    double ripple = kFirstRipple * width_;
+    double ripple = wall_.half_wavelength > 0.0 ? wall_.half_wavelength : width_;
     NonlocalReading result;
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       if (iteration > 0) {
@@ -117,7 +133,7 @@ class Reader {
 
   numerics::Penalty bend(double sharper) const {
     const Array1 x = nodes_.segment(1, nodes_.size() - 2);
-    const double zone = kEndZone * width_;
+    const double zone = std::max(kEndZone * width_, kEndShare * wall_.half_wavelength);
     const Array1 stiffness =
         1.0 /
         (1.0 + sharper * ((-(x / zone).square()).exp() + (-((length_ - x) / zone).square()).exp()));
@@ -168,7 +184,7 @@ class Reader {
       step.noise[a] = own * own;
       const double doubt = interpolation_[i] * interpolation_[i] +
                            std::pow(wall_.calibrated.model_error * off[i], 2) +
-                           std::pow(labels_[i] * uniform[i], 2);
+                           std::pow(std::hypot(labels_[i], offset_[i]) * uniform[i], 2);
       variance[a] = std::max(own * own, 1e-12) + together * doubt;
       model.row(a) = sampling_.row(i) + inner_sampling_.row(i) * change;
       target[a] =
@@ -234,7 +250,7 @@ class Reader {
   Array1 nodes_;
   numerics::NaturalSpline spline_, inner_;
   Matrix sampling_, inner_sampling_;
-  Array1 interpolation_, labels_;
+  Array1 interpolation_, labels_, offset_;
   std::vector<Index> used_;
   std::vector<numerics::Penalty> penalties_;
   Array1 trust_;         ///< (n_used) of the last step
@@ -271,6 +287,27 @@ ModelLevels model_levels(const Array1& estimates) {
   levels.pressure =
       Eigen::Map<const Array1>(pressures.data(), static_cast<Index>(pressures.size()));
   return levels;
+}
+
+/// (model minus measured deflection)/compliance at the levels, Pa; the compliance by the model's
+/// neighbouring levels.
+Array2 curve_offset(const calibration::ConstitutiveCurves& curves, const ModelLevels& levels,
+                    const Array2& profiles) {
+  const Index n = levels.pressure.size();
+  Array2 offset = Array2::Zero(n, profiles.cols());
+  for (std::size_t k = 0; k < levels.of_level.size(); ++k) {
+    const Index j = levels.of_level[k];
+    const Index low = std::max<Index>(0, j - 1), high = std::min(n - 1, j + 1);
+    const Profile& profile = curves.levels[k].profile;
+    for (Index i = 0; i < profiles.cols(); ++i) {
+      if (profile.flags[i] != 0) continue;
+      const double rise = profiles(high, i) - profiles(low, i);
+      if (!(rise > 0.0)) continue;
+      offset(j, i) = (profiles(j, i) - profile.zeta[i]) *
+                     (levels.pressure[high] - levels.pressure[low]) / rise;
+    }
+  }
+  return offset;
 }
 
 }  // namespace
@@ -320,6 +357,12 @@ std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCu
     return std::nullopt;
   }
   wall.calibrated = *calibrated;
+  wall.level_pressure = levels.pressure;
+  const Index n_nodes = wall.response->nodes().size();
+  const double middle = levels.pressure[levels.pressure.size() / 2];
+  wall.half_wavelength = wall.response->half_wavelength(
+      wall.response->answer(Eigen::VectorXd::Constant(n_nodes, middle)).kernel, n_nodes / 2);
+  wall.curve_offset = curve_offset(curves, levels, profiles);
   return wall;
 }
 

@@ -15,7 +15,7 @@ struct ReadNonlocalOptions {
   bool nonlocal = true;  ///< off: every station on its own
   /// Finest ripple of p(x) that is looked for away from the ends, as a share of the wavelength of
   /// which the wall itself shows half.
-  double finest_ripple = 0.7;
+  double finest_ripple = 1.0;
   /// A wall model whose profiles near the ends are off by more than this share is not used.
   double largest_model_error = 0.2;
 
@@ -36,6 +36,10 @@ struct ReadNonlocalOptions {
 struct NonlocalWall {
   CalibratedWall calibrated;
   std::shared_ptr<const WallResponse> response;
+  double half_wavelength = 0.0;  ///< m, at mid-channel under the middle level
+  Array1 level_pressure;         ///< (n_levels) Pa, ascending
+  /// (n_levels, n_x) Pa: by how much the model's curves lie off the measured ones, at the levels.
+  Array2 curve_offset;
 };
 
 /// Fits a wall to the calibration and solves it at the levels.
@@ -68,8 +72,9 @@ struct NonlocalReading {
 /// that make the data most likely (numerics::fit_penalised()), but never so small that ripples
 /// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
 /// station's own noise, and as noise of a correlation length of 0.3 widths: the doubt of
-/// interpolation, model_error times the correction R - p, and the labels' uncertainty where the
-/// correction changes with pressure as such (at a buckling front).
+/// interpolation, model_error times the correction R - p, and the labels' uncertainty and the
+/// offset of the model's curves where the correction changes with pressure as such (at a buckling
+/// front).
 ///
 /// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, "smoothness"
 /// for the rest); every mode of the station-by-station reading carried through the same linear

@@ -329,14 +329,33 @@ TEST(Measure, ReportsProgressUpToTheEnd) {
     if (stage == "reducing maps") most = std::max(most, fraction);
   };
   measure(test.read(), {}, 1, monitor);
-  EXPECT_EQ(stages,
-            (std::vector<std::string>{"finding the channel", "reducing maps", "reading p(x)"}));
+  EXPECT_EQ(stages, (std::vector<std::string>{"finding the channel", "reducing maps",
+                                              "solving the wall", "reading p(x)"}));
   EXPECT_EQ(most, 1.0);
+}
+
+TEST(Measure, SaysHowItReadAndKeepsTheLocalReadingBesideIt) {
+  TestExperiment test;
+  const Measurement off = test.measure();
+  EXPECT_EQ(off.reading, "every station on its own: switched off");
+  EXPECT_TRUE(same_bytes(off.pressure, off.pressure_local));
+  EXPECT_TRUE(off.half_response_wavelength.isNaN().all());
+  const Measurement on = test.measure(MeasureOptions{});
+  EXPECT_EQ(on.reading.find("through the influence operator of a clamped wall"), 0U) << on.reading;
+  EXPECT_TRUE(same_bytes(on.pressure_local, off.pressure_local));
+  EXPECT_FALSE(same_bytes(on.pressure, on.pressure_local));
+  // A stretched wall 1.7 mm wide: between half and two widths.
+  EXPECT_GT(on.half_response_wavelength.minCoeff(), 0.8e-3);
+  EXPECT_LT(on.half_response_wavelength.maxCoeff(), 3.4e-3);
+  test.remove_line("thickness");
+  const Measurement unknown = test.measure(MeasureOptions{});
+  EXPECT_EQ(unknown.reading,
+            "every station on its own: the experiment does not tell wall.thickness");
 }
 
 TEST(Measure, TellsEveryOptionAndEveryInput) {
   TestExperiment test;
-  MeasureOptions options;
+  MeasureOptions options = station_by_station();
   options.reading.coverage = 0.68;
   options.section.start = 2.0 * mm;
   options.intersections.window = 0.2 * mm;
@@ -347,7 +366,7 @@ TEST(Measure, TellsEveryOptionAndEveryInput) {
     EXPECT_NE(("\n" + m.settings).find("\n" + line), std::string::npos) << line;
     ++n_options;
   });
-  EXPECT_EQ(n_options, 19);
+  EXPECT_EQ(n_options, 22);
   for (const char* line :
        {"coverage = 0.68\n", "section-start = 0.002 m\n", "section-end = auto\n"}) {
     EXPECT_NE(m.settings.find(line), std::string::npos) << line << m.settings;

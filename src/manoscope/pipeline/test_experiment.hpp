@@ -29,6 +29,14 @@ inline twin::Scenario small_scenario() {
   return scenario;
 }
 
+/// The wall of small_scenario() answers to the pressure at x alone: there are no neighbours to
+/// heed.
+inline MeasureOptions station_by_station() {
+  MeasureOptions options;
+  options.nonlocal.nonlocal = false;
+  return options;
+}
+
 /// A virtual experiment whose files can be changed before they are measured.
 class TestExperiment {
  public:
@@ -76,7 +84,8 @@ class TestExperiment {
     twin::write_experiment(folder(), twin, true);
     return experiment::read_experiment(folder());
   }
-  results::Measurement measure(const MeasureOptions& options = {}, int n_threads = 1) {
+  results::Measurement measure(const MeasureOptions& options = station_by_station(),
+                               int n_threads = 1) {
     return pipeline::measure(read(), options, n_threads);
   }
 
