@@ -56,7 +56,7 @@ TEST(JudgeStations, ShowTheSplitWhereThereIsOne) {
   split.runs[0].stations.curve_shape = Array1::Constant(11, -3.0);
   split.runs[0].stations.locality = Array1::Constant(11, 1.0);
   text = station_table(judge_stations(test.m, test.truth, split));
-  EXPECT_NE(text.find("2e-09,4,3,-3,1,-2\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("2e-09,0.5,4,3,-3,1,-2\n"), std::string::npos) << text;
 }
 
 TEST(JudgeStations, OfNoRunsAreAHeadline) { EXPECT_EQ(station_table({}), "run\n"); }

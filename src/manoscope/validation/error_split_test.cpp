@@ -149,6 +149,7 @@ TEST(ErrorSplit, LeavesOutStationsThatAnyReadingCannotAnswer) {
 TEST(ErrorSplit, IsSummedUpOverTheStretch) {
   ErrorSplit split;
   split.split = Flags1::Ones(4);
+  split.neighbourhood = Array1::Zero(4);
   split.labels = Array1{{3.0, -4.0, 0.0, 99.0}};
   split.maps = Array1{{-3.0, 4.0, 6.0, 99.0}};
   split.curve_shape_and_locality = Array1::Constant(4, 1.0);
