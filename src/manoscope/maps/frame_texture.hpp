@@ -79,7 +79,8 @@ class FrameTexture {
 /// of 5 over the blocks of the search and of 6 over all blocks, at the end; (2) the two halves of
 /// the rim (black and white squares of a chessboard) agree within four standard uncertainties of
 /// their difference; (3) both uncertainties are below 0.1 pixel. Noise, white or correlated, has
-/// blocks of either sign and passes (1) by chance about once in a million.
+/// blocks of either sign: none of 375 pairs of polished frames passes, correlated over up to 16
+/// pixels.
 ///
 /// What never moves with the frame but is in every map, such as marks on the instrument's own
 /// mirror, is a texture, too, and its shift is nil: only the wall itself can tell
