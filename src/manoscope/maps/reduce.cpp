@@ -10,6 +10,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
 #include "manoscope/maps/channel_map.hpp"
+#include "manoscope/maps/combine_shifts.hpp"
 #include "manoscope/maps/despike.hpp"
 #include "manoscope/maps/level.hpp"
 #include "manoscope/numerics/robust.hpp"
@@ -77,6 +78,60 @@ void measure_crest(const LeveledMap& map, const ChannelFrame& frame, ReducedMap&
   const double pixel = map.deflection.noise().si();
   result.crest_uncertainty =
       std::sqrt(pixel * pixel * std::min(1.0, shared * gain) + map.plane.covariance(0, 0));
+}
+
+using Shifts = std::vector<std::optional<OneShift>>;
+
+/// Offset across and slope of every map's centre line against the common one, by the sides of its
+/// wall and by the frame's texture.
+std::pair<Shifts, Shifts> lines_with_texture(const std::vector<ReducedMap>& reduced,
+                                             const CentreLine& common) {
+  Shifts offset, slope, texture_offset, texture_slope;
+  for (const ReducedMap& map : reduced) {
+    const auto& line = map.condition.centre;
+    const auto& texture = map.condition.texture;
+    const auto where = [](bool known, double value, double uncertainty) {
+      return known ? std::optional(OneShift{value, uncertainty}) : std::nullopt;
+    };
+    const CentreLine own = line.value_or(CentreLine{});
+    offset.push_back(
+        where(line.has_value(), (own.offset - common.offset).si(), own.offset_uncertainty.si()));
+    slope.push_back(where(line.has_value(), own.slope - common.slope, own.slope_uncertainty));
+    const TextureShift moved = texture.value_or(TextureShift{});
+    texture_offset.push_back(where(texture.has_value(), moved.z.si(), moved.z_uncertainty.si()));
+    const bool turns = texture && moved.angle_uncertainty > 0.0;
+    texture_slope.push_back(where(turns, moved.angle, moved.angle_uncertainty));
+  }
+  return {combine_shifts(offset, texture_offset).shifts,
+          combine_shifts(slope, texture_slope).shifts};
+}
+
+/// Takes the frame's texture into the shifts along the flow.
+/// @return whether it agrees with the wall's ends.
+bool heed_texture(Registration& found, const std::vector<ReducedMap>& hydrostatic,
+                  const std::vector<ReducedMap>& flow) {
+  Shifts ends, texture;
+  const auto add = [&](const std::vector<ReducedMap>& maps,
+                       const std::vector<std::optional<MapShift>>& shifts) {
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      ends.emplace_back();
+      if (shifts[i]) ends.back() = OneShift{shifts[i]->shift.si(), shifts[i]->uncertainty.si()};
+      texture.emplace_back();
+      const auto& moved = maps[i].condition.texture;
+      if (moved) texture.back() = OneShift{moved->x.si(), moved->x_uncertainty.si()};
+    }
+  };
+  add(hydrostatic, found.hydrostatic);
+  add(flow, found.flow);
+  const CombinedShifts combined = combine_shifts(ends, texture);
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (!texture[i] || !combined.shifts[i]) continue;  // as the ends say, to the last bit
+    auto& shift =
+        i < hydrostatic.size() ? found.hydrostatic[i] : found.flow[i - hydrostatic.size()];
+    shift = MapShift{Length::from_si(combined.shifts[i]->value),
+                     Length::from_si(combined.shifts[i]->uncertainty)};
+  }
+  return combined.agree;
 }
 
 }  // namespace
@@ -168,6 +223,9 @@ ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const Map
                                  options.width, known.placement, bend);
   result.condition = leveled.condition;
   result.condition.centre = find_centre_line(leveled.deflection, frame.length, frame.width);
+  if (known.texture != nullptr) {
+    result.condition.texture = find_texture_shift(*known.texture, leveled.deflection);
+  }
   const Length shift = options.shift_uncertainty.value_or(leveled.deflection.grid().pitch_x *
                                                           (1.0 / std::sqrt(12.0)));
   result.condition.shift.uncertainty = shift;
@@ -176,6 +234,32 @@ ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const Map
                                               slope_along(result.profile, kReach) * shift.si()});
   measure_crest(leveled, frame, result);
   return result;
+}
+
+FrameTexture texture_of_reference(const HeightMap& map, const ChannelFrame& frame,
+                                  const MapKnowledge& known, const std::string& name,
+                                  const ReduceOptions& options) {
+  const LeveledMap leveled = level_map(map, frame, known, name, options);
+  const ChannelGrid& grid = leveled.deflection.grid();
+  return {leveled.deflection, frame.length, frame.width,
+          options.rim_margin.value_or(auto_rim_margin(grid, frame))};
+}
+
+void place_reference(std::vector<ReducedMap>& reduced) {
+  std::vector<double> x, z, angle;
+  for (const ReducedMap& map : reduced) {
+    const auto& texture = map.condition.texture;
+    if (!texture) continue;
+    x.push_back(texture->x_uncertainty.si());
+    z.push_back(texture->z_uncertainty.si());
+    angle.push_back(texture->angle_uncertainty);
+  }
+  if (x.empty()) return;
+  TextureShift own;
+  own.x_uncertainty = Length::from_si(numerics::median(x) / std::sqrt(2.0));
+  own.z_uncertainty = Length::from_si(numerics::median(z) / std::sqrt(2.0));
+  own.angle_uncertainty = numerics::median(angle) / std::sqrt(2.0);
+  reduced.front().condition.texture = own;
 }
 
 Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n_hydrostatic,
@@ -197,11 +281,12 @@ Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n
                           Length::from_si(numerics::median(offset_doubts)),
                           numerics::median(slope_doubts)};
   placements.common = common;
+  const auto [across, turned] = lines_with_texture(reduced, common);
   for (std::size_t i = 0; i < reduced.size(); ++i) {
-    if (!reduced[i].condition.centre) continue;
-    CentreLine line = *reduced[i].condition.centre;
-    line.offset -= common.offset;
-    line.slope -= common.slope;
+    if (!across[i]) continue;
+    const OneShift slope = turned[i].value_or(OneShift{});
+    const CentreLine line{Length::from_si(across[i]->value), slope.value,
+                          Length::from_si(across[i]->uncertainty), slope.uncertainty};
     const double doubt = line.offset_uncertainty.si() + 0.5 * length.si() * line.slope_uncertainty;
     if (line.farthest(length.si()) > std::max(kPixels * pitch_z.si(), kSigmas * doubt)) {
       placements.own[i] = line;
@@ -220,6 +305,10 @@ std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
     return found;
   };
   Registration found = register_profiles(profiles(hydrostatic), profiles(flow), length, width);
+  const bool agree = heed_texture(found, hydrostatic, flow);
+  for (auto* maps : {&hydrostatic, &flow}) {
+    for (ReducedMap& map : *maps) map.condition.texture_contradicts = !agree;
+  }
   Length common{};
   if (from_the_wall && found.offset && !hydrostatic.empty() &&
       found.offset->uncertainty < hydrostatic.front().condition.shift.uncertainty) {

@@ -8,6 +8,7 @@
 #include "manoscope/core/height_map.hpp"
 #include "manoscope/core/profile.hpp"
 #include "manoscope/maps/centre_line.hpp"
+#include "manoscope/maps/frame_texture.hpp"
 #include "manoscope/maps/fringe_order.hpp"
 #include "manoscope/maps/noise.hpp"
 #include "manoscope/maps/registration.hpp"
@@ -23,7 +24,8 @@ struct ReduceOptions {
   /// Standard uncertainty of each map's own position along the flow. Auto: 0.29 pixel, a shift
   /// anywhere within half a pixel, which is what unregistered maps of one mount show.
   std::optional<Length> shift_uncertainty;
-  /// Find each map's position from the wall's own ends (register_profiles()); off where a
+  /// Find each map's position from the wall's own ends (register_profiles()) and from the texture
+  /// of the frame, if it has one (find_texture_shift()); off where a
   /// shift_uncertainty is stated.
   bool registration = true;
   /// Order of the surface through the rim that zeta counts from: 1, a plane; 2 where the frame
@@ -65,15 +67,18 @@ struct MapCondition {
   MapShift shift{};
   FringePatches fringe;
   RimBend bend;  ///< of the rim beyond its plane, subtracted only with level_order = 2
-  std::optional<CentreLine> centre;  ///< of the wall, against the frame's axis; if it shows
-  CentreLine placement;              ///< what of it was taken back
+  std::optional<CentreLine> centre;     ///< of the wall, against the frame's axis; if it shows
+  CentreLine placement;                 ///< what of it was taken back
+  std::optional<TextureShift> texture;  ///< of the frame, against the map of reference
+  bool texture_contradicts = false;     ///< the ends of the walls: left out in all maps
 };
 
 /// What is known of a map besides its heights.
 struct MapKnowledge {
-  std::optional<Length> height_noise{};  ///< standard deviation of one pixel; else from the rim
-  std::optional<Length> wavelength{};    ///< of the interferometer
-  CentreLine placement{};                ///< where the wall's middle runs in this map
+  std::optional<Length> height_noise{};   ///< standard deviation of one pixel; else from the rim
+  std::optional<Length> wavelength{};     ///< of the interferometer
+  CentreLine placement{};                 ///< where the wall's middle runs in this map
+  const FrameTexture* texture = nullptr;  ///< of the map of reference; null: not looked for
 };
 
 /// One map reduced to its profile.
@@ -104,6 +109,16 @@ LeveledMap level_map(const HeightMap& map, const ChannelFrame& frame, const MapK
 ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const MapKnowledge& known,
                       const std::string& name, const ReduceOptions& options = {});
 
+/// The rim's texture of the map that the others are registered against.
+FrameTexture texture_of_reference(const HeightMap& map, const ChannelFrame& frame,
+                                  const MapKnowledge& known, const std::string& name,
+                                  const ReduceOptions& options = {});
+
+/// The first of the maps is the reference: it has not moved, as well as that is known (the median
+/// of the others' uncertainties over root 2: of the noise of two maps its own). Nothing where no
+/// map shows a texture.
+void place_reference(std::vector<ReducedMap>& reduced);
+
 /// Where the walls of maps lie across the flow and at which angle.
 struct Placements {
   /// Median over the hydrostatic maps that show it: what belongs to the frame.
@@ -113,7 +128,8 @@ struct Placements {
   std::vector<CentreLine> own;
 };
 
-/// A map counts as moved if its wall's middle lies farther than 0.3 pixels from the others'
+/// From the sides of the wall and, where the frame has one, from its texture (combine_shifts()). A
+/// map counts as moved if its wall's middle lies farther than 0.3 pixels from the others'
 /// anywhere and by more than four standard uncertainties.
 ///
 /// What remains of shift and rotation is no line of the budget, for the wall is clamped at both
@@ -125,7 +141,8 @@ struct Placements {
 Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n_hydrostatic,
                            Length length, Length pitch_z);
 
-/// Finds the shift of every map by register_profiles() and takes it back, with all that
+/// Finds the shift of every map by register_profiles() and from the frame's texture
+/// (combine_shifts()) and takes it back, with all that
 /// move_profile() says. A map whose shift is not found, or less well than it was supposed to be
 /// known, stays as it is. Does nothing if the options say so.
 ///

@@ -82,6 +82,17 @@ void doubt_origin(const ReducedExperiment& reduced, Words& doubts) {
                   std::abs(shift) * 1e3, shift > 0.0 ? "downstream" : "upstream"));
 }
 
+void doubt_texture(const ReducedExperiment& reduced, Words& doubts) {
+  const auto& maps = reduced.hydrostatic;
+  if (maps.empty() || !maps.front().condition.texture_contradicts) return;
+  doubts.push_back(
+      "The texture of the rigid rim tells other shifts of the maps than the ends of the wall, "
+      "which "
+      "were heeded: marks that never move are the instrument's, and a map of a flat mirror named "
+      "as "
+      "instrument.reference takes them away");
+}
+
 /// The wall's middle against the frame's, and its angle.
 void doubt_centre(const ReducedExperiment& reduced, Words& doubts) {
   if (!reduced.centre) return;
@@ -370,6 +381,7 @@ Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPla
     doubt_origin(reduced, doubts);
     doubt_centre(reduced, doubts);
   }
+  doubt_texture(reduced, doubts);
   doubt_rim(experiment, reduced, doubts);
   doubt_maps(experiment, reduced, doubts);
   for (const std::string& doubt : file_warnings(experiment, reduced.file_warnings)) {

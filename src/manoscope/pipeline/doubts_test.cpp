@@ -122,6 +122,12 @@ TEST(FindDoubts, OfTheWallsEndsTellAnOriginThatIsOffByLess) {
   EXPECT_TRUE(test.doubts().empty());
 }
 
+TEST(FindDoubts, TellMarksOfTheInstrumentThatNeverMove) {
+  CleanCase test;
+  for (auto& map : test.reduced.hydrostatic) map.condition.texture_contradicts = true;
+  expect_says(test.only(), "instrument.reference");
+}
+
 TEST(FindDoubts, OfTheWallsSidesTellOffsetAndRotationApart) {
   CleanCase test;
   test.reduced.grid = {1024, 192, 16.0 * um, 16.0 * um};

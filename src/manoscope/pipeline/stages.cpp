@@ -119,10 +119,14 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
         sha256(read_file(io::map_address(*experiment.instrument.reference).file));
   }
   const std::string& first_name = files.front().second;
-  result.grid = source.read(files.front().first).grid();
+  const HeightMap first = source.read(files.front().first);
+  result.grid = first.grid();
   maps::MapKnowledge known;
   known.height_noise = experiment.instrument.height_noise;
   known.wavelength = experiment.instrument.wavelength;
+  const bool registers = options.registration && !options.shift_uncertainty;
+  std::optional<maps::FrameTexture> texture;
+  if (registers) texture = maps::texture_of_reference(first, frame, known, first_name, options);
   constexpr std::size_t kAhead = 2;
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(files.size()), n_threads, [&](Index i) {
@@ -136,10 +140,13 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
     result.hash[at] = sha256(read_file(io::map_address(path).file));
     const HeightMap map = source.read(path, &result.file_warnings[at]);
     require_same_grid(result.grid, first_name, map.grid(), name);
-    reduced[at] = maps::reduce_map(map, frame, known, name, options);
+    maps::MapKnowledge its = known;
+    if (texture && at > 0) its.texture = &*texture;
+    reduced[at] = maps::reduce_map(map, frame, its, name, options);
     monitor.report("reducing maps",
                    static_cast<double>(++done) / static_cast<double>(files.size()));
   });
+  maps::place_reference(reduced);
   // Maps whose wall lies elsewhere across the flow, or askew, once more in their own place.
   if (options.registration) {
     const Length pitch_z = frame.along_columns() ? result.grid.pitch_y : result.grid.pitch_x;
@@ -152,8 +159,10 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
       monitor.checkpoint();
       maps::MapKnowledge placed = known;
       placed.placement = placements.own[at];
+      const auto its_texture = reduced[at].condition.texture;
       reduced[at] =
           maps::reduce_map(source.read(files[at].first), frame, placed, files[at].second, options);
+      reduced[at].condition.texture = its_texture;
     });
   }
   const auto [lowest, highest] = extreme_levels(experiment);

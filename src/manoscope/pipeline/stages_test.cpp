@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "manoscope/core/random.hpp"
 #include "manoscope/io/test_instrument_files.hpp"
 #include "manoscope/maps/camera_window.hpp"
 #include "manoscope/pipeline/test_experiment.hpp"
@@ -213,6 +214,81 @@ TEST(ReduceMaps, CountXFromTheWallsOwnEndsWhereThePlaceIsFound) {
       EXPECT_NEAR(middle_of(reduced.hydrostatic[k].profile), 7.75e-3, 5e-6) << pixels << ' ' << k;
     }
   }
+}
+
+/// A camera of 24 x 23 um a pixel that sees 33 pixels of rim and never moves.
+twin::Scenario rimmed_scenario() {
+  twin::Scenario scenario = small_scenario();
+  scenario.camera.n_along = 704;
+  scenario.camera.n_across = 144;
+  scenario.camera.rim = 0.8 * mm;
+  scenario.camera.shift = Length{};
+  return scenario;
+}
+
+/// Adds 50 nm of texture, correlated over 2 pixels, to the rim of a map.
+void add_texture(HeightMap& map) {
+  constexpr Index kRim = 32;
+  RandomStream random(8, "texture of the rim");
+  Array2 white(map.grid().ny + 4, map.grid().nx + 4);
+  for (Index i = 0; i < white.size(); ++i) white.data()[i] = random.normal();
+  Array2 height = map.height();
+  const Index nx = map.grid().nx, ny = map.grid().ny;
+  for (Index iy = 0; iy < ny; ++iy) {
+    for (Index ix = 0; ix < nx; ++ix) {
+      if (ix >= kRim && ix < nx - kRim && iy >= kRim && iy < ny - kRim) continue;
+      height(iy, ix) += 50e-9 * white.block<5, 5>(iy, ix).sum() / 5.0;
+    }
+  }
+  map = HeightMap(map.grid(), std::move(height), Flags2(map.flags()));
+}
+
+TEST(ReduceMaps, TakeShiftsFromTheTextureOfTheFrameWhereTheWallShowsNone) {
+  constexpr Index kColumns = 2, kLevel = 5;  // 700 Pa: neither bowed nor stretched, without ends
+  const auto reduced_with = [&](bool textured) {
+    TestExperiment shifted(rimmed_scenario());
+    for (auto& map : shifted.twin.maps) {
+      if (textured) add_texture(map.map);
+    }
+    HeightMap& map = shifted.map("h05.gsf");
+    map = through_window(map, -kColumns, 0, map.grid().nx, map.grid().ny);
+    return reduce(shifted.read());
+  };
+  const auto bare = reduced_with(false), textured = reduced_with(true);
+  const double pitch = bare.grid.pitch_x.si();
+  EXPECT_FALSE(bare.hydrostatic[kLevel].condition.texture);
+  EXPECT_EQ(bare.hydrostatic[kLevel].condition.shift.shift, Length{});
+  const maps::MapCondition& found = textured.hydrostatic[kLevel].condition;
+  ASSERT_TRUE(found.texture);
+  EXPECT_FALSE(found.texture_contradicts);
+  EXPECT_LT(found.shift.uncertainty.si(), 0.05 * pitch);
+  EXPECT_NEAR(found.shift.shift.si(), kColumns * pitch, 4.0 * found.shift.uncertainty.si());
+}
+
+TEST(ReduceMaps, LeaveOutATextureThatDoesNotMoveWithTheWall) {
+  TestExperiment shifted(rimmed_scenario());
+  std::vector<double> columns;
+  for (auto& map : shifted.twin.maps) {
+    const Index right = static_cast<Index>(columns.size() % 7) - 3;
+    columns.push_back(static_cast<double>(right));
+    map.map = through_window(map.map, right, 0, map.map.grid().nx, map.map.grid().ny);
+    add_texture(map.map);
+  }
+  const auto reduced = reduce(shifted.read());
+  ASSERT_TRUE(reduced.offset);
+  int n_with_ends = 0;
+  for (std::size_t k = 0; k < reduced.hydrostatic.size(); ++k) {
+    const auto& condition = reduced.hydrostatic[k].condition;
+    EXPECT_TRUE(condition.texture) << k;
+    EXPECT_TRUE(condition.texture_contradicts);
+    if (condition.shift.uncertainty > 2.0 * um) continue;  // this wall shows no ends
+    ++n_with_ends;
+    const double shift = (condition.shift.shift + reduced.offset->shift).si();
+    // The ends of a wall seen by pixels of 24 um, whose middle is that of the frame to a pixel's
+    // twentieth: a tenth of a pixel where the texture would be off by up to three.
+    EXPECT_NEAR(shift, -columns[k] * reduced.grid.pitch_x.si(), 2.4e-6) << k;
+  }
+  EXPECT_GT(n_with_ends, 8);
 }
 
 TEST(PlaceChannel, IsFoundWithinAPixelOfTheTruth) {
