@@ -18,7 +18,7 @@ SECONDS_PER_READER ?= 30
 TIDY_COMMITS ?= 6
 # Much arithmetic and little memory work: minutes each under the sanitizers, which see the same code
 # on smaller grids in the other tests. `make asan-all` runs them, too.
-LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid
+LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid|NistStrd|^PropagateByDraws
 LONG_TWINS = VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
 LONG_READINGS = ^ReadNonlocal.HasBars|Practice.(Sensitivity|ResultFile)|Agree.*S1|^Origin.ThatIsWrong
 LONG_UNDER_ASAN = $(LONG_WALLS)|$(LONG_TWINS)|$(LONG_READINGS)
