@@ -39,6 +39,17 @@ void add_modes(const Matrix& covariance, const Matrix& sampling, const std::stri
   }
 }
 
+/// Variance, Pa2, that gives independent stations the weight of the doubt of interpolation: each of
+/// its variables is one error over all the stations between two levels.
+Array1 interpolation_variance(const PressureReading& reading) {
+  Array1 variance = Array1::Zero(reading.x.size());
+  for (const ErrorMode& mode : reading.uncertainty.modes) {
+    if (mode.source != "interpolation") continue;
+    variance += static_cast<double>((mode.effect != 0.0).count()) * mode.effect.square();
+  }
+  return variance;
+}
+
 /// Square root of the sum of squares of the effects of one source.
 Array1 effect_of(const PressureReading& reading, const std::string& source) {
   Array1 squares = Array1::Zero(reading.x.size());
@@ -75,7 +86,7 @@ class Reader {
         inner_(nodes_.segment(1, nodes_.size() - 2)),
         sampling_(spline_.sampling(local.x)),
         inner_sampling_(inner_.sampling(local.x)),
-        interpolation_(effect_of(local, "interpolation")),
+        interpolation_(interpolation_variance(local)),
         labels_(effect_of(local, "pressure labels")),
         offset_(offset_of_curves(local, wall)) {
     for (Index i = 0; i < local.x.size(); ++i) {
@@ -182,10 +193,9 @@ class Reader {
       const Index i = used_[static_cast<std::size_t>(a)];
       const double own = local_.uncertainty.independent[i];
       step.noise[a] = own * own;
-      const double doubt = interpolation_[i] * interpolation_[i] +
-                           std::pow(wall_.calibrated.model_error * off[i], 2) +
+      const double doubt = std::pow(wall_.calibrated.model_error * off[i], 2) +
                            std::pow(std::hypot(labels_[i], offset_[i]) * uniform[i], 2);
-      variance[a] = std::max(own * own, 1e-12) + together * doubt;
+      variance[a] = std::max(own * own, 1e-12) + interpolation_[i] + together * doubt;
       model.row(a) = sampling_.row(i) + inner_sampling_.row(i) * change;
       target[a] =
           local_.pressure[i] - off[i] - sampling_.row(i).dot(pressure) + model.row(a).dot(pressure);

@@ -71,10 +71,10 @@ struct NonlocalReading {
 /// sharply within half a width of the ends (s = 1 + V exp(-(2 d/w)^2), V from 0 to 1e5), are those
 /// that make the data most likely (numerics::fit_penalised()), but never so small that ripples
 /// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
-/// station's own noise, and as noise of a correlation length of 0.3 widths: the doubt of
-/// interpolation, model_error times the correction R - p, and the labels' uncertainty and the
-/// offset of the model's curves where the correction changes with pressure as such (at a buckling
-/// front).
+/// station's own noise; the doubt of interpolation, one error over all stations between two levels;
+/// and as noise of a correlation length of 0.3 widths: model_error times the correction R - p, and
+/// the labels' uncertainty and the offset of the model's curves where the correction changes with
+/// pressure as such (at a buckling front).
 ///
 /// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, "smoothness"
 /// for the rest); every mode of the station-by-station reading carried through the same linear
