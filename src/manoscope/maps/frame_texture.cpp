@@ -108,8 +108,7 @@ FrameTexture::FrameTexture(const DeflectionMap& reference, Length length, Length
   blocks_ = thinned(std::move(blocks_), kMostBlocks);
   constexpr double kNanometre = 1e-9;  // any unit in which the heights suit a float
   const auto fill = [&](Block& block) {
-    const Patch<kSide + 2, kSide + 2> patch(reference, block.iz - 1, block.ix - 1,
-                                            1.0 / kNanometre);
+    Patch<kSide + 2, kSide + 2> patch(reference, block.iz - 1, block.ix - 1, 1.0 / kNanometre);
     for (int r = 0; r < kSide; ++r) {
       const auto at = static_cast<std::size_t>(r);
       block.height[at] = patch.row(r + 1, 1);
