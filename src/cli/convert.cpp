@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include "commands.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/io/map_address.hpp"
 #include "manoscope/io/reader.hpp"
 #include "manoscope/io/writer.hpp"
 
@@ -26,6 +28,10 @@ void add_convert(Program& program) {
       for (const std::string& warning : loaded.warnings) remark(context, "note: " + warning);
       remark(context, fmt::format("wrote {}", path.string()));
     };
+    std::error_code none;
+    if (std::filesystem::equivalent(io::map_address(args->in).file, args->out, none)) {
+      throw InputError(args->out.string(), "is the file that is read", "Choose another name");
+    }
     if (!args->all) {
       const io::LoadedMap loaded = io::load_height_map(args->in, args->reading);
       io::write_map(args->out, loaded.map, title);

@@ -107,6 +107,7 @@ std::string summary_text(const results::Measurement& m) {
 std::string pressure_text(const results::Measurement& m) {
   constexpr Index kRunsAcross = 4;  // 80 columns of a terminal
   std::string text = "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)\n";
+  if (!m.reading.empty()) text += "read " + m.reading.substr(0, m.reading.find(": E = ")) + '\n';
   for (Index first = 0; first < m.flow_rate.size(); first += kRunsAcross) {
     if (first > 0) text += '\n';
     text += pressure_table(m, first, std::min(first + kRunsAcross, m.flow_rate.size()));

@@ -73,6 +73,9 @@ std::string draft_toml(const std::string& name, const std::optional<CameraGrid>&
   text +=
       "# outward = \"+height\"        # does a wall bulging away from the fluid read higher or "
       "lower?\n"
+      "\n# [wall]\n"
+      "# thickness = \"? um\"   # lets p(x) be read to within 0.3 mm of the ends; no more is "
+      "needed\n"
       "\n[fluid]\n"
       "name = \"water\"             # CONFIRM\n"
       "viscosity = \"1.0 mPa s\"    # CONFIRM: water at 20 degC\n"

@@ -231,6 +231,13 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_map_conditions(reduced, measurement);
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
                                      doubtful_levels(curves, options.curves), runs, findings);
+  if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&
+      experiment.wall->thickness) {
+    measurement.warnings.push_back(fmt::format(
+        "every station was read on its own, though wall.thickness is {:.4g} um: {}; check the "
+        "thickness. Outside the test section p(x) may be off by more than its bars",
+        experiment.wall->thickness->in(um), no_wall));
+  }
   return measurement;
 }
 

@@ -132,6 +132,7 @@ std::string facts_list(const Measurement& m) {
                  fmt::format("{}, {} apart", m.x.size(), with_unit(spacing, 3, length_unit)));
   }
   list += fact("Maps", fmt::format("{}", m.map.size()));
+  if (!m.reading.empty() && !m.run.empty()) list += fact("p(x) read", escape_html(m.reading));
   return list + "</dl>\n";
 }
 

@@ -254,7 +254,8 @@ std::optional<Figure> pulls_along(const Measurement& m, const std::vector<Judged
   script.set(common_settings());
   script.set("set multiplot\nset lmargin at screen 0.12\nset rmargin at screen 0.97");
   script.set(fmt::format("set xrange [0:{}]", plain(m.channel_length / units.x.si)));
-  script.set("set tmargin at screen 0.965\nset bmargin at screen 0.53\nset format x ''");
+  script.set("set tmargin at screen 0.935\nset bmargin at screen 0.53\nset format x ''");
+  script.set("set key at screen 0.545,0.985 center top maxrows 1 samplen 2 font ',12'");
   script.set(fmt::format("set yrange [{}:{}]\nset ylabel 'pull'", plain(-kEnd), plain(kEnd)));
   const Array1 x = thinned(m.x) / units.x.si;
   for (Index r = 0; r < static_cast<Index>(judged.size()); ++r) {
@@ -286,7 +287,8 @@ std::optional<Figure> pulls_along(const Measurement& m, const std::vector<Judged
       script.add_data({x, thinned(Array1((squares * mean).sqrt()))}),
       fmt::format("using 1:2 with lines lw 2 lc rgb '{}' {}", kBlack, title("rms over the runs")));
   script.plot();
-  script.set("set tmargin at screen 0.48\nset bmargin at screen 0.11\nset format x '%g'");
+  script.set("set tmargin at screen 0.445\nset bmargin at screen 0.11\nset format x '%g'");
+  script.set("set key at screen 0.545,0.5 center top maxrows 1 samplen 2 font ',12'");
   script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
   script.set("set yrange [0:106]\nset ytics 20\nset ylabel 'runs within their bars (%)'");
   script.draw(script.add_data({ends, Array1::Constant(2, 100.0 * m.coverage)}),

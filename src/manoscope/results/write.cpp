@@ -63,7 +63,14 @@ void write_result(const fs::path& folder, const Measurement& measurement,
 bool check_destination(const fs::path& folder, const std::string& title, bool overwrite) {
   const fs::path file = folder / kResultFile;
   std::error_code error;
-  if (!fs::exists(fs::symlink_status(file, error))) return false;
+  if (!fs::exists(fs::symlink_status(file, error))) {
+    for (const char* name : {"pressure.csv", "drops.csv", "report.html"}) {
+      if (overwrite || !fs::exists(fs::symlink_status(folder / name, error))) continue;
+      throw InputError((folder / name).string(), "it is there already, and no result beside it",
+                       "Choose another folder, or give --overwrite to replace it");
+    }
+    return false;
+  }
   if (overwrite) return true;
   const auto earlier = title_in(file);
   if (earlier == title) return true;

@@ -233,12 +233,23 @@ std::vector<fs::path> write_all(const fs::path& folder, const VirtualExperiment&
   return names;
 }
 
-/// Refuses a folder that holds an experiment.
+/// Refuses a folder that holds an experiment, or maps and lists of names that would be replaced.
 void check_free(const fs::path& folder, bool overwrite) {
   std::error_code error;
-  if (overwrite || !fs::exists(folder / kToml, error)) return;
-  throw InputError((folder / kToml).string(), "an experiment stands there already",
-                   "Choose another folder, or add --overwrite");
+  if (overwrite) return;
+  if (fs::exists(folder / kToml, error)) {
+    throw InputError((folder / kToml).string(), "an experiment stands there already",
+                     "Choose another folder, or add --overwrite");
+  }
+  for (fs::directory_iterator file(folder, error), end; !error && file != end;
+       file.increment(error)) {
+    const std::string name = file->path().filename().string();
+    if (file->path().extension() != ".gsf" && name != "hydrostatic.csv" && name != "flow.csv") {
+      continue;
+    }
+    throw InputError(file->path().string(), "maps or lists stand there already",
+                     "Choose an empty folder, or add --overwrite to replace those of equal name");
+  }
 }
 
 }  // namespace
