@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/flags.hpp"
 #include "manoscope/numerics/natural_spline.hpp"
 #include "manoscope/numerics/penalised_fit.hpp"
 
@@ -57,6 +58,22 @@ Array1 effect_of(const PressureReading& reading, const std::string& source) {
     if (mode.source == source) squares += mode.effect.square();
   }
   return squares.sqrt();
+}
+
+/// Number of neighbouring stations whose errors are one: 1 + 2 sum of the autocorrelation up to its
+/// first lag that is not clear of 0.
+double count_together(const Array1& residual) {
+  constexpr Index kLongest = 60;
+  const Index n = residual.size();
+  const Array1 off = residual.max(-kHuber).min(kHuber);
+  const double variance = off.square().mean(), clear = 2.0 / std::sqrt(static_cast<double>(n));
+  double together = 1.0;
+  for (Index lag = 1; lag < std::min(kLongest, n / 4) && variance > 0.0; ++lag) {
+    const double rho = (off.head(n - lag) * off.tail(n - lag)).mean() / variance;
+    if (rho < clear) break;
+    together += 2.0 * rho;
+  }
+  return together;
 }
 
 /// How far the model's curve lies off the measured one about each reading, Pa.
@@ -120,7 +137,7 @@ class Reader {
       // The choice of the weight may go back and forth: after a few steps it stays.
       if (iteration >= kFreeIterations && !settled_) settled_ = chosen_;
       const Step step = solve(pressure, answer, options_.finest_ripple * ripple);
-      trust_ = step.trust;
+      if (!settled_) trust_ = step.trust;
       chosen_ = Choice{step.fit.penalty, step.fit.weight};
       pressure = spline_.from_coefficients() * step.fit.coefficients;
       if (!pressure.allFinite()) return std::nullopt;
@@ -137,9 +154,10 @@ class Reader {
  private:
   struct Step {
     numerics::PenalisedFit fit;
-    Matrix gain;   ///< (n, n_used) of the node values by the stations' readings
-    Array1 noise;  ///< (n_used) Pa2, the stations' own variance
-    Array1 trust;  ///< (n_used) share of its weight that a station keeps
+    Matrix gain;            ///< (n, n_used) of the node values by the stations' readings
+    Array1 noise;           ///< (n_used) Pa2, the stations' own variance
+    Array1 trust;           ///< (n_used) share of its weight that a station keeps
+    double together = 1.0;  ///< stations that err together, by the residuals
   };
 
   numerics::Penalty bend(double sharper) const {
@@ -195,7 +213,7 @@ class Reader {
       step.noise[a] = own * own;
       const double doubt = std::pow(wall_.calibrated.model_error * off[i], 2) +
                            std::pow(std::hypot(labels_[i], offset_[i]) * uniform[i], 2);
-      variance[a] = std::max(own * own, 1e-12) + interpolation_[i] + together * doubt;
+      variance[a] = std::max(step.noise[a], 1e-12) + interpolation_[i] + together * doubt;
       model.row(a) = sampling_.row(i) + inner_sampling_.row(i) * change;
       target[a] =
           local_.pressure[i] - off[i] - sampling_.row(i).dot(pressure) + model.row(a).dot(pressure);
@@ -213,6 +231,8 @@ class Reader {
                                                   {settled_->weight, 0})
                         : numerics::fit_penalised(data, penalties_, {floor, 24});
     if (settled_) step.fit.penalty = settled_->penalty;
+    step.together =
+        count_together((target - model * step.fit.coefficients).array() / variance.sqrt());
     const Array1 pull =
         ((target - model * step.fit.coefficients).array().square() / variance).sqrt();
     step.trust = (kHuber / pull.max(kHuber));
@@ -231,7 +251,7 @@ class Reader {
     const Matrix all = nodes * step.fit.covariance * nodes.transpose();
     const Matrix pixels = step.gain * step.noise.matrix().asDiagonal() * step.gain.transpose();
     auto& modes = reading.uncertainty.modes;
-    add_modes(pixels, sampling_, "reading", "pixel noise", modes);
+    add_modes(step.together * pixels, sampling_, "reading", "pixel noise", modes);
     add_modes(all - pixels, sampling_, "smoothness", "smoothness", modes);
     const auto m = static_cast<Index>(used_.size());
     for (const ErrorMode& mode : local_.uncertainty.modes) {
@@ -245,6 +265,11 @@ class Reader {
     modes.push_back({"wall model, outlet half", "wall model", off * (1.0 - before)});
     reading.uncertainty.independent = Array1::Zero(reading.x.size());
     for (Index i = 0; i < reading.x.size(); ++i) {
+      // Where the wall hardly rises p(x) would be a guess of the spline's.
+      const double distance = std::min(reading.x[i], length_ - reading.x[i]);
+      if (reading.answered(i) && distance <= kEndGap * width_) {
+        reading.flags[i] |= ReadingFlag::insensitive;
+      }
       if (reading.answered(i)) continue;
       reading.pressure[i] = 0.0;
       for (ErrorMode& mode : modes) mode.effect[i] = 0.0;

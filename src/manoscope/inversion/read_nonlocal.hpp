@@ -15,7 +15,7 @@ struct ReadNonlocalOptions {
   bool nonlocal = true;  ///< off: every station on its own
   /// Finest ripple of p(x) that is looked for away from the ends, as a share of the wavelength of
   /// which the wall itself shows half.
-  double finest_ripple = 1.0;
+  double finest_ripple = 0.7;
   /// A wall model whose profiles near the ends are off by more than this share is not used.
   double largest_model_error = 0.2;
 
@@ -71,18 +71,20 @@ struct NonlocalReading {
 /// sharply within half a width of the ends (s = 1 + V exp(-(2 d/w)^2), V from 0 to 1e5), are those
 /// that make the data most likely (numerics::fit_penalised()), but never so small that ripples
 /// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
-/// station's own noise; the doubt of interpolation, one error over all stations between two levels;
-/// and as noise of a correlation length of 0.3 widths: model_error times the correction R - p, and
-/// the labels' uncertainty and the offset of the model's curves where the correction changes with
-/// pressure as such (at a buckling front).
+/// station's own noise; the doubt of
+/// interpolation, one error over all stations between two levels; and as noise of a correlation
+/// length of 0.3 widths: model_error times the correction R - p, and the labels' uncertainty and
+/// the offset of the model's curves where the correction changes with pressure as such (at a
+/// buckling front).
 ///
-/// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, "smoothness"
+/// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, times the number
+/// of neighbouring stations whose residuals go together; "smoothness"
 /// for the rest); every mode of the station-by-station reading carried through the same linear
 /// estimate; and model_error times the correction, one variable for each half of the channel
 /// ("wall model").
 ///
-/// Stations without an answer stay without; stations nearer to an end than 8 % of the width do not
-/// take part, and are read off the spline.
+/// Stations without an answer stay without. Stations nearer to an end than 8 % of the width do not
+/// take part and have no answer (`insensitive`): the wall hardly rises there.
 ///
 /// Source: our own. The kernel's reach is the wall's own (about w/pi under tension); see
 /// docs/accuracy.md for errors on virtual experiments.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -87,6 +88,23 @@ std::string reading_text(const std::optional<inversion::NonlocalWall>& wall,
       "is taken as known to {:.1f} %",
       fitted.youngs_modulus.si(), fitted.prestress.si(), fitted.preload.load.si(),
       fitted.poisson_ratio, 100.0 * wall->calibrated.model_error);
+}
+
+/// Names the runs that were read station by station because the steps of the other reading did not
+/// settle.
+void tell_unsettled(const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
+                    results::Measurement& m) {
+  std::string names;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (!std::isnan(findings[r].half_wavelength)) continue;
+    names += (names.empty() ? "" : ", ") + runs[r].name;
+  }
+  if (names.empty()) return;
+  m.reading += "; station by station, since the steps did not settle: " + names;
+  m.warnings.push_back(fmt::format(
+      "{}: p(x) was read station by station, since reading it through the wall did not settle; "
+      "outside the test section it may be off by more than its bars",
+      names));
 }
 
 RunFindings read_run(const Experiment& experiment, const calibration::ConstitutiveCurves& curves,
@@ -234,10 +252,12 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&
       experiment.wall->thickness) {
     measurement.warnings.push_back(fmt::format(
-        "every station was read on its own, though wall.thickness is {:.4g} um: {}; check the "
-        "thickness. Outside the test section p(x) may be off by more than its bars",
+        "every station was read on its own, though wall.thickness is {:.4g} um: {}; check "
+        "thickness, length, width and origin. Outside the test section p(x) may be off by more "
+        "than its bars",
         experiment.wall->thickness->in(um), no_wall));
   }
+  if (wall) tell_unsettled(runs, findings, measurement);
   return measurement;
 }
 
