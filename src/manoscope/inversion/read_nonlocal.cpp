@@ -24,6 +24,7 @@ constexpr double kEndZone = 0.5;      // widths, where p may bend more sharply
 constexpr double kEndShare = 0.35;    // half-response wavelengths: the same, of walls of long reach
 constexpr int kMostIterations = 10, kFreeIterations = 4;
 constexpr double kStepShare = 0.05;  // of the local reading's mean standard uncertainty
+constexpr double kFiner = 16.0;      // half a ripple, as weight
 constexpr double kHuber = 2.5;       // pulls beyond count as if they grew no more (Huber 1964)
 constexpr Index kFewestStations = 20;
 
@@ -154,9 +155,10 @@ class Reader {
  private:
   struct Step {
     numerics::PenalisedFit fit;
-    Matrix gain;            ///< (n, n_used) of the node values by the stations' readings
-    Array1 noise;           ///< (n_used) Pa2, the stations' own variance
-    Array1 trust;           ///< (n_used) share of its weight that a station keeps
+    Matrix gain;   ///< (n, n_used) of the node values by the stations' readings
+    Array1 noise;  ///< (n_used) Pa2, the stations' own variance
+    Array1 trust;  ///< (n_used) share of its weight that a station keeps
+    Vector finer;  ///< (n) Pa, what half the finest ripple would change, where that is in force
     double together = 1.0;  ///< stations that err together, by the residuals
   };
 
@@ -236,6 +238,13 @@ class Reader {
     const Array1 pull =
         ((target - model * step.fit.coefficients).array().square() / variance).sqrt();
     step.trust = (kHuber / pull.max(kHuber));
+    if (step.fit.weight <= floor) {
+      step.finer = spline_.from_coefficients() *
+                   (numerics::fit_penalised(data, {penalties_[step.fit.penalty]},
+                                            {step.fit.weight / kFiner, 0})
+                        .coefficients -
+                    step.fit.coefficients);
+    }
     step.gain = spline_.from_coefficients() * step.fit.covariance * weighted.transpose();
     return step;
   }
@@ -253,6 +262,9 @@ class Reader {
     auto& modes = reading.uncertainty.modes;
     add_modes(step.together * pixels, sampling_, "reading", "pixel noise", modes);
     add_modes(all - pixels, sampling_, "smoothness", "smoothness", modes);
+    if (step.finer.size() > 0) {
+      modes.push_back({"finest ripple", "smoothness", (sampling_ * step.finer).array()});
+    }
     const auto m = static_cast<Index>(used_.size());
     for (const ErrorMode& mode : local_.uncertainty.modes) {
       Vector effect(m);

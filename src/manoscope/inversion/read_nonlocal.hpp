@@ -15,7 +15,7 @@ struct ReadNonlocalOptions {
   bool nonlocal = true;  ///< off: every station on its own
   /// Finest ripple of p(x) that is looked for away from the ends, as a share of the wavelength of
   /// which the wall itself shows half.
-  double finest_ripple = 0.7;
+  double finest_ripple = 1.0;
   /// A wall model whose profiles near the ends are off by more than this share is not used.
   double largest_model_error = 0.2;
 
@@ -79,7 +79,8 @@ struct NonlocalReading {
 ///
 /// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, times the number
 /// of neighbouring stations whose residuals go together; "smoothness"
-/// for the rest); every mode of the station-by-station reading carried through the same linear
+/// for the rest); where the finest ripple is in force, what half of it
+/// would change; every mode of the station-by-station reading carried through the same linear
 /// estimate; and model_error times the correction, one variable for each half of the channel
 /// ("wall model").
 ///

@@ -107,7 +107,12 @@ TEST(ReadNonlocal, LeavesSilentStationsSilentAndKeepsTheirFlags) {
   const auto local = read_pressure(curves, flow);
   const auto nonlocal = read_nonlocal(local, fitted_wall(), 0.95);
   ASSERT_TRUE(nonlocal);
-  EXPECT_TRUE((nonlocal->pressure.flags == local.flags).all());
+  for (Index i = 0; i < local.x.size(); ++i) {
+    // Within 8 % of the width from an end the wall hardly rises.
+    const bool at_end = std::min(local.x[i], 8e-3 - local.x[i]) <= 0.08e-3;
+    const FlagBits added = at_end && local.answered(i) ? ReadingFlag::insensitive : FlagBits{0};
+    EXPECT_EQ(nonlocal->pressure.flags[i], local.flags[i] | added) << i;
+  }
   EXPECT_FALSE(nonlocal->pressure.answered(203));
   EXPECT_EQ(nonlocal->pressure.pressure[203], 0.0);
   EXPECT_EQ(nonlocal->pressure.uncertainty.standard()[203], 0.0);
