@@ -16,8 +16,8 @@ using namespace texture;
 constexpr Index kMostBlocks = 512;
 
 const Row& column_places() {
-  static const Row places = Row::LinSpaced(-0.5F * (kSide - 1), 0.5F * (kSide - 1));
-  return places;
+  static const Row kPlaces = Row::LinSpaced(-0.5F * (kSide - 1), 0.5F * (kSide - 1));
+  return kPlaces;
 }
 float row_place(int r) { return static_cast<float>(r) - 0.5F * static_cast<float>(kSide - 1); }
 

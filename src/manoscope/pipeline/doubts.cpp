@@ -123,7 +123,7 @@ void doubt_common_bend(const experiment::Experiment& experiment,
   constexpr double kSigmas = 5.0, kShare = 1e-3;  // of the height, where its uncertainty is unknown
   double variance = 0.0;
   for (const auto* bend : bends) variance += std::pow(bend->at_middle_uncertainty.si(), 2);
-  const double n = static_cast<double>(bends.size());
+  const auto n = static_cast<double>(bends.size());
   const double height = experiment.channel.height.si();
   const double known = experiment.channel.height_uncertainty
                            ? experiment.channel.height_uncertainty->si()
