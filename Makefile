@@ -20,7 +20,7 @@ TIDY_COMMITS ?= 6
 # on smaller grids in the other tests. `make asan-all` runs them, too.
 LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid|NistStrd|^PropagateByDraws
 LONG_TWINS = VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
-LONG_READINGS = ^ReadNonlocal.HasBars|Practice.(Sensitivity|ResultFile)|Agree.*S1|^Origin.ThatIsWrong
+LONG_READINGS = IsNeverFoundOnAPolishedFrame|^ReadNonlocal.HasBars|Practice.(Sensitivity|ResultFile)|Agree.*S1|^Origin.ThatIsWrong
 LONG_UNDER_ASAN = $(LONG_WALLS)|$(LONG_TWINS)|$(LONG_READINGS)
 
 # CMake takes these as the defaults of a new build folder and leaves one that exists as it is.

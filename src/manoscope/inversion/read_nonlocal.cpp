@@ -22,8 +22,9 @@ constexpr double kEndGap = 0.08;      // widths: nearer stations do not take par
 constexpr double kCorrelation = 0.3;  // widths, of errors of curves and model along x
 constexpr double kEndZone = 0.5;      // widths, where p may bend more sharply
 constexpr double kEndShare = 0.35;    // half-response wavelengths: the same, of walls of long reach
-constexpr int kMostIterations = 10, kFreeIterations = 4;
+constexpr int kMostIterations = 14, kFreeIterations = 4;
 constexpr double kStepShare = 0.05;  // of the local reading's mean standard uncertainty
+constexpr double kNearly = 10.0;     // times that: what the last step may leave, in the bars
 constexpr double kFiner = 16.0;      // half a ripple, as weight
 constexpr double kHuber = 2.5;       // pulls beyond count as if they grew no more (Huber 1964)
 constexpr Index kFewestStations = 20;
@@ -143,11 +144,14 @@ class Reader {
       pressure = spline_.from_coefficients() * step.fit.coefficients;
       if (!pressure.allFinite()) return std::nullopt;
       const double moved = std::sqrt((pressure - before).squaredNorm() / static_cast<double>(n));
-      if (iteration > 1 && moved < enough_) {
+      const bool last = iteration + 1 == kMostIterations && moved < kNearly * enough_;
+      if (iteration > 1 && (moved < enough_ || last)) {
         result.misfit = step.fit.misfit / static_cast<double>(used_.size());
-        result.pressure = finish(pressure, answer, step, coverage);
+        result.pressure = finish(pressure, answer, step, pressure - before, coverage);
         return result;
       }
+      // A step that leads back and forth is halved.
+      if (settled_) pressure = 0.5 * (pressure + before);
     }
     return std::nullopt;
   }
@@ -250,7 +254,7 @@ class Reader {
   }
 
   PressureReading finish(const Vector& pressure, const WallResponse::Answer& answer,
-                         const Step& step, double coverage) const {
+                         const Step& step, const Vector& last_step, double coverage) const {
     PressureReading reading;
     reading.x = local_.x;
     reading.pressure = (sampling_ * pressure).array();
@@ -262,6 +266,7 @@ class Reader {
     auto& modes = reading.uncertainty.modes;
     add_modes(step.together * pixels, sampling_, "reading", "pixel noise", modes);
     add_modes(all - pixels, sampling_, "smoothness", "smoothness", modes);
+    modes.push_back({"last step", "smoothness", (sampling_ * last_step).array()});
     if (step.finer.size() > 0) {
       modes.push_back({"finest ripple", "smoothness", (sampling_ * step.finer).array()});
     }
