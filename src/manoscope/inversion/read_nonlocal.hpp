@@ -68,7 +68,8 @@ struct NonlocalReading {
 ///   sum_i (r_i - R[p](x_i))^2 / v_i + weight int p''(x)^2 / s(x) dx,
 ///
 /// by Gauss-Newton steps with the exact kernel dR/dp. The weight, and by how much p may bend more
-/// sharply within half a width of the ends (s = 1 + V exp(-(2 d/w)^2), V from 0 to 1e5), are those
+/// sharply near the ends (s = 1 + V exp(-(d/z)^2), d the distance from the end, z half a width or a
+/// third of the half-response wavelength, V from 0 to 1e6), are those
 /// that make the data most likely (numerics::fit_penalised()), but never so small that ripples
 /// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
 /// station's own noise; the doubt of
@@ -91,7 +92,8 @@ struct NonlocalReading {
 /// docs/accuracy.md for errors on virtual experiments.
 ///
 /// @param local  of the same stations as the curves of the calibration; without end doubt.
-/// @return none where the steps do not converge: the local reading stands then.
+/// @return none where the steps do not come to rest, or too few stations have an answer: the local
+/// reading stands then. A last step below half a standard uncertainty is accepted, and in the bars.
 /// @throws InputError if an option is out of range; Interrupted.
 std::optional<NonlocalReading> read_nonlocal(const PressureReading& local, const NonlocalWall& wall,
                                              double coverage,
