@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "manoscope/core/height_map.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/twin/scenario.hpp"
+#include "manoscope/twin/solved_scenario.hpp"
 #include "manoscope/twin/truth.hpp"
 #include "manoscope/twin/truth_netcdf.hpp"
 
@@ -41,5 +43,15 @@ struct VirtualExperiment {
 /// @throws Interrupted if the monitor says so.
 VirtualExperiment make_virtual_experiment(const Scenario& scenario, std::uint64_t seed,
                                           int n_threads = 0, const Monitor& monitor = {});
+
+/// The same of a scenario whose walls are solved: the second half of make_virtual_experiment().
+///
+/// @param solved  of solve_scenario() of a scenario with the same channel, wall, fluid, levels and
+///                flow rates; camera, gauges and pump may differ.
+/// @param done    called after each map, from several threads at once.
+VirtualExperiment record_experiment(const Scenario& scenario, const SolvedScenario& solved,
+                                    std::uint64_t seed, int n_threads = 0,
+                                    const Monitor& monitor = {},
+                                    const std::function<void()>& done = {});
 
 }  // namespace manoscope::twin
