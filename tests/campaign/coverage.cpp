@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHeader =
     "base,wall,seed,run,stretch,label_noise_Pa,n_levels,n_along,nonlocal,drop_Pa,n_answered,"
-    "n_silent,rms_Pa,largest_Pa,mean_Pa,pull_mean,pull_rms,coverage_68,coverage_95\n";
+    "n_silent,rms_Pa,largest_Pa,mean_Pa,pull_mean,pull_rms,coverage_68,coverage_95,budget\n";
 
 struct Stretch {
   const char* name;
@@ -65,11 +65,26 @@ std::set<std::string> members_done(const fs::path& file) {
   return done;
 }
 
-std::string row(const std::string& front, const validation::Judgement& judged) {
-  return front + fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4f},{:.4f},{:.4f},{:.4f}\n",
+std::string row(const std::string& front, const validation::Judgement& judged,
+                const std::string& budget) {
+  return front + fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
                              judged.n_answered, judged.n_silent, judged.rms, judged.largest,
                              judged.mean, judged.pull_mean, judged.pull_rms, judged.coverage_68,
-                             judged.coverage);
+                             judged.coverage, budget);
+}
+
+/// Mean variance by source, Pa2, over the stations that count: "source=variance;...".
+std::string budget_text(const results::Measurement& m, Index r, const Flags1& answered) {
+  std::string text;
+  const double n = std::max<double>(1.0, static_cast<double>((answered != 0).count()));
+  for (std::size_t s = 0; s < m.budget_source.size(); ++s) {
+    double sum = 0.0;
+    for (Index i = 0; i < answered.size(); ++i) {
+      if (answered[i] != 0) sum += m.pressure_variance[s](r, i);
+    }
+    text += fmt::format("{}={:.3g};", m.budget_source[s], sum / n);
+  }
+  return text;
 }
 
 /// The drop over the test section as the user is told it, as one reading.
@@ -104,10 +119,10 @@ std::string rows_of(const Member& member, const twin::Scenario& scenario,
           validation::judge_reading(answered, m.pressure.row(r), m.pressure_uncertainty.row(r),
                                     m.pressure_lower.row(r), m.pressure_upper.row(r), expected);
       judged.n_silent = (inside != 0).count() - judged.n_answered;
-      rows += row(front(stretch.name), judged);
+      rows += row(front(stretch.name), judged, budget_text(m, r, answered));
     }
     if (std::isfinite(m.extracted_drop[r])) {
-      rows += row(front("drop"), judge_drop(m, r, expected));
+      rows += row(front("drop"), judge_drop(m, r, expected), "");
     }
   }
   return rows;
@@ -115,12 +130,12 @@ std::string rows_of(const Member& member, const twin::Scenario& scenario,
 
 /// Measures one experiment, written to a folder of its own.
 std::string run_member(const Member& member, const twin::Scenario& scenario,
-                       const twin::SolvedScenario& solved, const fs::path& scratch) {
+                       const twin::SolvedScenario& solved, const fs::path& scratch, bool keep) {
   const fs::path folder = scratch / fmt::format("{}-{}-{}", member.base, member.wall, member.seed);
   const auto made = twin::record_experiment(scenario, solved, member.own_seed(), 1);
   twin::write_experiment(folder, made, true);
   const auto measured = pipeline::measure(experiment::read_experiment(folder), {}, 1);
-  fs::remove_all(folder);
+  if (!keep) fs::remove_all(folder);
   return rows_of(member, scenario, measured, made.truth) + member.name() + "done,\n";
 }
 
@@ -154,6 +169,7 @@ struct Args {
   std::vector<std::string> bases{"S1", "S2", "S3", "S4", "S5", "S1b"};
   std::uint64_t walls = 2, first_wall = 0, seeds = 2, first_seed = 1;
   int threads = 0;
+  bool exact_labels = false, perfect_camera = false, keep = false;
   fs::path output, scratch = fs::temp_directory_path() / "manoscope-campaign";
 };
 
@@ -171,12 +187,14 @@ void run(const Args& args) {
         if (!done.contains(member.name())) members.push_back(member);
       }
       if (members.empty()) continue;
-      const twin::Scenario scenario = varied_scenario(base, wall);
+      twin::Scenario scenario = varied_scenario(base, wall);
+      if (args.exact_labels) scenario.gauge.noise = 0.01 * Pa;
+      if (args.perfect_camera) scenario.camera = scenario.camera.without_errors();
       const auto solved = solve(scenario, args.threads);
       if (!solved) continue;
       parallel_for(static_cast<Index>(members.size()), args.threads, [&](Index i) {
-        const std::string rows =
-            run_member(members[static_cast<std::size_t>(i)], scenario, *solved, args.scratch);
+        const std::string rows = run_member(members[static_cast<std::size_t>(i)], scenario, *solved,
+                                            args.scratch, args.keep);
         const std::lock_guard lock(guard);
         out << rows << std::flush;
       });
@@ -198,6 +216,9 @@ int main(int argc, char** argv) {
   app.add_option("--seeds", args.seeds, "experiments with each wall");
   app.add_option("--first-seed", args.first_seed, "seed of the first");
   app.add_option("--threads", args.threads, "0: all the machine has");
+  app.add_flag("--exact-labels", args.exact_labels, "gauges of 0.01 Pa");
+  app.add_flag("--perfect-camera", args.perfect_camera, "no error of the maps");
+  app.add_flag("--keep", args.keep, "leave the experiments in the folder of --scratch");
   app.add_option("--scratch", args.scratch, "folder for the experiments while they are measured");
   CLI11_PARSE(app, argc, argv);
   try {

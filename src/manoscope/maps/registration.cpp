@@ -139,22 +139,59 @@ MapShift at_edge(const Fractions& values, const Fractions& variances, int first)
   return {Length::from_si(edge), Length::from_si(std::sqrt(noise + model + kFloor * kFloor))};
 }
 
-/// The wall's inset at one height, from the hydrostatic maps that show all of it.
+/// The wall's inset at one height, from the hydrostatic maps that show both ends of it.
 struct Inset {
   double height;
   Fractions distance, variance;
+  int first = 0;  ///< fractions before this one are not known
 };
 
-/// Between the heights of the maps by straight lines; the nearest beyond them.
+/// One fraction's distance at a height, with its variance; none where no map is near.
+struct Crossing {
+  double distance, variance;
+};
+
+/// Between the heights of the maps that know fraction k by straight lines; up to one step beyond
+/// the outermost of them its value, with what it changes over that step as doubt.
+///
+/// @param known  ascending in height.
+std::optional<Crossing> crossing_at(const std::vector<const Inset*>& known, int k, double height) {
+  if (known.empty()) return std::nullopt;
+  const auto above = std::upper_bound(known.begin(), known.end(), height,
+                                      [](double h, const Inset* one) { return h < one->height; });
+  if (above != known.begin() && above != known.end()) {
+    const Inset &low = **(above - 1), &high = **above;
+    const double share = (height - low.height) / (high.height - low.height);
+    return Crossing{(1.0 - share) * low.distance[k] + share * high.distance[k],
+                    (1.0 - share) * low.variance[k] + share * high.variance[k]};
+  }
+  if (known.size() < 2) return std::nullopt;
+  const bool below = above == known.begin();
+  const Inset& nearest = below ? *known[0] : **(known.end() - 1);
+  const Inset& next = below ? *known[1] : **(known.end() - 2);
+  const double steps = std::abs((height - nearest.height) / (next.height - nearest.height));
+  if (!(steps <= 1.0)) return std::nullopt;
+  const double change = steps * (next.distance[k] - nearest.distance[k]);
+  return Crossing{nearest.distance[k], nearest.variance[k] + change * change};
+}
+
+/// The inset at a height, each fraction from the maps that know it.
+/// @param insets  ascending in height.
 Inset inset_at(const std::vector<Inset>& insets, double height) {
-  const auto above = std::upper_bound(insets.begin(), insets.end(), height,
-                                      [](double h, const Inset& one) { return h < one.height; });
-  if (above == insets.begin()) return insets.front();
-  if (above == insets.end()) return insets.back();
-  const Inset& low = *(above - 1);
-  const double share = (height - low.height) / (above->height - low.height);
-  return {height, (1.0 - share) * low.distance + share * above->distance,
-          (1.0 - share) * low.variance + share * above->variance};
+  Inset found{height, Fractions::Zero(), Fractions::Zero(), 0};
+  for (int k = 0; k < static_cast<int>(kFractions.size()); ++k) {
+    std::vector<const Inset*> known;
+    for (const Inset& inset : insets) {
+      if (inset.first <= k) known.push_back(&inset);
+    }
+    if (const auto crossing = crossing_at(known, k, height)) {
+      found.distance[k] = crossing->distance;
+      found.variance[k] = crossing->variance;
+    } else {
+      found.first = k + 1;
+    }
+  }
+  return found;
 }
 
 /// Mean weighted by the inverse square of the uncertainties; none of none.
@@ -220,9 +257,9 @@ Registration register_profiles(const std::vector<const Profile*>& hydrostatic,
       shift += more.shift.si();
       more.shift = Length::from_si(shift);
       found.hydrostatic[i] = more;
-      if (pass == kPasses && first == 0) {
+      if (pass == kPasses) {
         insets.push_back({0.5 * (inlet->height + outlet->height),
-                          0.5 * (inlet->distance + outlet->distance), variance});
+                          0.5 * (inlet->distance + outlet->distance), variance, first});
       }
     }
   }
@@ -244,8 +281,10 @@ Registration register_profiles(const std::vector<const Profile*>& hydrostatic,
       found.flow[i].reset();
       if (!end || std::abs(end->height) < kLeastMovement * largest) break;
       const Inset inset = inset_at(insets, end->height);
+      const int first = std::max(end->first, inset.first);
+      if (first > static_cast<int>(kFractions.size()) - kLeastFractions) break;
       MapShift more =
-          at_edge(end->distance - inset.distance, end->variance + inset.variance, end->first);
+          at_edge(end->distance - inset.distance, end->variance + inset.variance, first);
       shift += at_inlet ? more.shift.si() : -more.shift.si();
       more.shift = Length::from_si(shift) - found.offset->shift;
       found.flow[i] = more;

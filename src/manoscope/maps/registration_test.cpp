@@ -14,11 +14,11 @@ namespace {
 constexpr double kLength = 15.5e-3, kWidth = 1.7e-3, kReach = kWidth / 3.14159265358979;
 
 /// The linear wall zeta - L^2 zeta'' = c p with p = p0 + g x, held at both ends: its exact answer.
-double tensioned(double x, double p0, double g) {
+double tensioned(double x, double p0, double g, double reach = kReach) {
   const double c = 2e-9;
   if (x <= 0.0 || x >= kLength) return 0.0;
   const double end = p0 + g * kLength;
-  return c * (p0 + g * x - p0 * std::exp(-x / kReach) - end * std::exp(-(kLength - x) / kReach));
+  return c * (p0 + g * x - p0 * std::exp(-x / reach) - end * std::exp(-(kLength - x) / reach));
 }
 
 /// Its profile seen by pixels of 16 um in a map that has slipped by `shift`.
@@ -77,6 +77,39 @@ TEST(Registration, ReadsAFlowTowardsSmallerPressuresAtTheOtherEndAlike) {
                                                Length::from_si(kLength), Length::from_si(kWidth));
   ASSERT_TRUE(found.flow[0].has_value());
   EXPECT_NEAR(found.flow[0]->shift.si(), 6e-6, 0.5e-6);
+}
+
+TEST(Registration, TakesEachFractionFromTheMapsThatShowIt) {
+  // Pixels so large that only the walls of long reach, those of the lowest levels, pass a tenth of
+  // their height inside the profile: the others are no measure of how far the wall reaches.
+  const auto coarse = [](double p0, double g, double shift) {
+    const double pitch = 40e-6;
+    Profile profile = seen(p0, g, shift);
+    const Index n = 387;
+    profile.x = Array1::LinSpaced(n, 0.5 * pitch, (static_cast<double>(n) - 0.5) * pitch);
+    profile.zeta = profile.uncertainty.independent = Array1::Zero(n);
+    profile.uncertainty.modes.clear();
+    profile.flags = Flags1::Zero(n);
+    for (Index i = 0; i < n; ++i) {
+      // The reach at the end that registers a flow map.
+      const double reach = kReach * (1.0 + std::exp(-p0 / 4e3));
+      profile.zeta[i] = tensioned(profile.x[i] - shift, p0, g, reach);
+    }
+    return profile;
+  };
+  std::vector<Profile> hydrostatic, flow;
+  for (int i = 1; i <= 10; ++i) hydrostatic.push_back(coarse(2e3 * i, 0.0, 0.0));
+  const double shifts[] = {-5e-6, 8e-6};
+  for (const double shift : shifts) flow.push_back(coarse(15e3, -5e3 / kLength, shift));
+  const Registration found = register_profiles(views(hydrostatic), views(flow),
+                                               Length::from_si(kLength), Length::from_si(kWidth));
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(found.flow[i].has_value());
+    const double error = found.flow[i]->shift.si() - shifts[i];
+    EXPECT_LT(std::abs(error), 2.0 * found.flow[i]->uncertainty.si()) << i;
+    // Cubic interpolation over 40 um of e^(-x/0.54 mm), and the straight line between levels.
+    EXPECT_LT(std::abs(error), 1e-6) << i;
+  }
 }
 
 TEST(Registration, TellsANoiseThatItsErrorsHave) {
