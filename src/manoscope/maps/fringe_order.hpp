@@ -4,15 +4,9 @@
 
 #include "manoscope/core/units.hpp"
 #include "manoscope/maps/channel_map.hpp"
+#include "manoscope/maps/fringe_islands.hpp"
 
 namespace manoscope::maps {
-
-/// What was done about patches of a false fringe order.
-struct FringePatches {
-  int mended = 0;   ///< patches lifted to their surroundings
-  int flagged = 0;  ///< patches that are no plain jump, flagged PixelFlag::fringe_order
-  Index mended_pixels = 0, flagged_pixels = 0;
-};
 
 /// Finds patches that stand off their surroundings by a sharp step, as an interferometer leaves
 /// them where it miscounts fringes, and mends them.
@@ -24,11 +18,12 @@ struct FringePatches {
 /// into patches. From the largest patch outwards each is lifted by the whole number of half
 /// wavelengths nearest to the mean of the jumps along its border; without a wavelength by that mean
 /// itself. A patch whose jumps do not agree within the noise, or with no whole number, is flagged.
-/// So is one below four pixels: it may be noise.
+/// So is one below four pixels: it may be noise. Where the wavelength is known, patches that show
+/// along the flow are mended first (mend_fringe_islands()).
 ///
 /// Source: our own. Validity: noise below an eighth of the wavelength (else nothing is done); steps
-/// sharp within one pixel. A patch whose border shows a gap is not found: so it may be where the
-/// wall itself rises by more than the jump from pixel to pixel and bends.
+/// sharp within one pixel. A patch whose border shows a gap is not found here: so it may be where
+/// the wall itself rises by more than the jump from pixel to pixel and bends.
 /// @param noise       standard deviation of one pixel.
 /// @param wavelength  of the interferometer, if known.
 FringePatches mend_fringe_patches(ChannelMap& map, Length noise, std::optional<Length> wavelength);

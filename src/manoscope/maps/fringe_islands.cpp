@@ -1,0 +1,164 @@
+#include "manoscope/maps/fringe_islands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "manoscope/core/flags.hpp"
+#include "manoscope/numerics/robust.hpp"
+
+namespace manoscope::maps {
+namespace {
+
+constexpr Index kLongest = 24;   // pixels along the flow
+constexpr Index kAround = 2;     // pixels beyond a patch that may belong to it
+constexpr Index kRowsApart = 6;  // rows between two runs whose ends may hide in missing pixels
+constexpr Index kSide = 5;       // pixels of the wall on either side
+constexpr Index kFewest = 4;     // pixels of a patch
+constexpr double kWhole = 0.15;  // distance from a whole number of half wavelengths
+constexpr double kNoises = 5.0;  // deviations of the noise that a pixel may be off
+
+/// Pixels [first, last] of one row between a jump and the same jump back.
+struct Run {
+  Index iz, first, last;
+  int order;  ///< half wavelengths
+};
+
+/// Touching runs of one order, and the box around them.
+struct Island {
+  Index top, bottom, left, right;
+  int order;
+  Index n_pixels = 0;  ///< of the runs
+};
+
+/// Jumps along x that come back by the same whole number of half wavelengths.
+std::vector<Run> find_runs(const std::vector<FringeJump>& jumps, Index nx, double half,
+                           double noise) {
+  const double slack = kWhole * half + kNoises * noise;
+  std::vector<Run> runs;
+  const FringeJump* open = nullptr;
+  for (const FringeJump& jump : jumps) {
+    if (jump.to != jump.from + 1) continue;
+    const bool same_row = open != nullptr && open->from / nx == jump.from / nx;
+    if (same_row && jump.from - open->from <= kLongest &&
+        std::abs(open->size + jump.size) <= slack) {
+      const double mean = 0.5 * (open->size - jump.size), order = std::round(mean / half);
+      if (order != 0.0 && std::abs(mean - order * half) <= slack) {
+        runs.push_back({jump.from / nx, open->to % nx, jump.from % nx, static_cast<int>(order)});
+        open = nullptr;
+        continue;
+      }
+    }
+    open = &jump;
+  }
+  return runs;
+}
+
+/// @param runs  by rows, as find_runs() gives them.
+std::vector<Island> join_runs(const std::vector<Run>& runs) {
+  std::vector<Island> islands;
+  for (const Run& run : runs) {
+    const auto touches = [&](const Island& island) {
+      return island.order == run.order && run.iz <= island.bottom + kRowsApart &&
+             run.first <= island.right + kAround && run.last >= island.left - kAround &&
+             std::max(run.last, island.right) - std::min(run.first, island.left) < kLongest;
+    };
+    const auto found = std::find_if(islands.begin(), islands.end(), touches);
+    if (found == islands.end()) {
+      islands.push_back({run.iz, run.iz, run.first, run.last, run.order, run.last - run.first + 1});
+      continue;
+    }
+    found->bottom = run.iz;
+    found->left = std::min(found->left, run.first);
+    found->right = std::max(found->right, run.last);
+    found->n_pixels += run.last - run.first + 1;
+  }
+  return islands;
+}
+
+/// The wall beside a patch, as a straight line along one row.
+struct Beside {
+  double x, height, slope;
+  double at(Index ix) const { return height + slope * (static_cast<double>(ix) - x); }
+};
+
+/// None with fewer than three good pixels on either side.
+std::optional<Beside> wall_beside(const ChannelMap& map, Index iz, Index first, Index last) {
+  std::array<double, 2> place{}, height{};
+  for (const int side : {0, 1}) {
+    const Index from = side == 0 ? first - kSide : last + 1;
+    std::vector<double> heights;
+    double sum = 0.0;
+    for (Index ix = std::max<Index>(0, from); ix < std::min(from + kSide, map.grid.nx); ++ix) {
+      if (map.flags(iz, ix) != 0) continue;
+      heights.push_back(map.height(iz, ix));
+      sum += static_cast<double>(ix);
+    }
+    constexpr std::size_t kFewestBeside = 3;
+    if (heights.size() < kFewestBeside) return std::nullopt;
+    place[static_cast<std::size_t>(side)] = sum / static_cast<double>(heights.size());
+    height[static_cast<std::size_t>(side)] = numerics::median(heights);
+  }
+  return Beside{place[0], height[0], (height[1] - height[0]) / (place[1] - place[0])};
+}
+
+/// What is to be done with the pixels about one island.
+struct Plan {
+  std::vector<Index> lift, flag;
+  Index n_wall = 0;  ///< pixels that lie where the wall is
+};
+
+Plan plan_island(const ChannelMap& map, const Island& island, double jump, double allowed) {
+  Plan plan;
+  const Index left = std::max<Index>(0, island.left - kAround);
+  const Index right = std::min(map.grid.nx - 1, island.right + kAround);
+  const Index bottom = std::min(map.grid.nz - 1, island.bottom + kAround);
+  for (Index iz = std::max<Index>(0, island.top - kAround); iz <= bottom; ++iz) {
+    const auto wall = wall_beside(map, iz, left, right);
+    for (Index ix = left; ix <= right; ++ix) {
+      if (map.flags(iz, ix) != 0) continue;
+      const Index here = iz * map.grid.nx + ix;
+      const double off = wall ? map.height(iz, ix) - wall->at(ix) : 0.5 * jump;
+      if (std::abs(off) <= allowed) {
+        ++plan.n_wall;
+      } else if (std::abs(off - jump) <= allowed) {
+        plan.lift.push_back(here);
+      } else {
+        plan.flag.push_back(here);
+      }
+    }
+  }
+  return plan;
+}
+
+}  // namespace
+
+FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>& jumps,
+                                  Length noise, Length wavelength) {
+  constexpr double kMostUnclear = 0.1;  // of the pixels about a patch
+  FringePatches found;
+  const double half = 0.5 * wavelength.si();
+  for (const Island& island : join_runs(find_runs(jumps, map.grid.nx, half, noise.si()))) {
+    if (island.n_pixels < kFewest) continue;
+    const double jump = island.order * half;
+    // A third of the jump keeps both kinds apart whatever the noise.
+    const double allowed = std::min(half / 3.0, std::max(kWhole * half, kNoises * noise.si()));
+    const Plan plan = plan_island(map, island, jump, allowed);
+    const auto n_unclear = static_cast<double>(plan.flag.size());
+    const auto n_clear = static_cast<double>(plan.n_wall) + static_cast<double>(plan.lift.size());
+    // Most runs' pixels must be where the jump takes them, and the rest where the wall is.
+    if (n_unclear > kMostUnclear * n_clear ||
+        static_cast<double>(plan.lift.size()) < 0.8 * static_cast<double>(island.n_pixels)) {
+      continue;
+    }
+    for (const Index pixel : plan.lift) map.height.data()[pixel] -= jump;
+    for (const Index pixel : plan.flag) map.flags.data()[pixel] |= PixelFlag::fringe_order;
+    ++found.mended;
+    found.mended_pixels += static_cast<Index>(plan.lift.size());
+    found.flagged_pixels += static_cast<Index>(plan.flag.size());
+  }
+  return found;
+}
+
+}  // namespace manoscope::maps

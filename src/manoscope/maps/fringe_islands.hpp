@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "manoscope/core/units.hpp"
+#include "manoscope/maps/channel_map.hpp"
+#include "manoscope/maps/fringe_jumps.hpp"
+
+namespace manoscope::maps {
+
+/// What was done about patches of a false fringe order.
+struct FringePatches {
+  int mended = 0;   ///< patches lifted to their surroundings
+  int flagged = 0;  ///< patches that are no plain jump, flagged PixelFlag::fringe_order
+  Index mended_pixels = 0, flagged_pixels = 0;
+};
+
+/// Mends patches that the wall on both sides of them, along the flow, tells from itself.
+///
+/// Along the flow a wall changes slowly. A patch begins on a row with a jump by a whole number of
+/// half wavelengths and ends, within 24 pixels, with the same jump back; rows that touch, or lie up
+/// to six apart (where a patch runs into missing pixels), make one patch. Each of its pixels, and
+/// those two pixels around, is then held against the straight line between the medians of five
+/// pixels on either side of the patch: those a whole number of half wavelengths off it are lifted,
+/// those near it stay, others are flagged. A patch whose surroundings do not follow that line (near
+/// a clamped end) is left alone.
+///
+/// So a patch is found that lies across the clamped side or on a steep flank, where the map's own
+/// bend across the flow hides a part of its border.
+///
+/// Source: our own. Validity: noise below an eighth of the wavelength; patches up to 24 pixels long
+/// along the flow and four pixels large.
+/// @param jumps  of find_fringe_jumps().
+/// @param noise  standard deviation of one pixel.
+FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>& jumps,
+                                  Length noise, Length wavelength);
+
+}  // namespace manoscope::maps
