@@ -32,26 +32,55 @@ struct Island {
   Index n_pixels = 0;  ///< of the runs
 };
 
-/// Jumps along x that come back by the same whole number of half wavelengths.
-std::vector<Run> find_runs(const std::vector<FringeJump>& jumps, Index nx, double half,
+/// The whole number of half wavelengths that a jump is; 0 if it is none.
+int whole_order(double jump, double half, double slack) {
+  const double order = std::round(jump / half);
+  return std::abs(jump - order * half) <= slack ? static_cast<int>(order) : 0;
+}
+
+/// The good pixels from one on, stepping `by`, up to the first missing one; none if that is far.
+std::optional<Run> up_to_gap(const ChannelMap& map, Index iz, Index ix, Index by, int order) {
+  Index at = ix;
+  while (std::abs(at - ix) < kLongest) {
+    const Index next = at + by;
+    if (next < 0 || next >= map.grid.nx) return std::nullopt;
+    if (map.flags(iz, next) != 0) return Run{iz, std::min(ix, at), std::max(ix, at), order};
+    at = next;
+  }
+  return std::nullopt;
+}
+
+/// Runs between jumps along x that come back by the same whole number of half wavelengths, or that
+/// end in missing pixels.
+std::vector<Run> find_runs(const ChannelMap& map, const std::vector<FringeJump>& jumps, double half,
                            double noise) {
+  const Index nx = map.grid.nx;
   const double slack = kWhole * half + kNoises * noise;
   std::vector<Run> runs;
+  // Of a jump without a counterpart either side may be the patch: what is none fails later.
+  const auto half_open = [&](const FringeJump& jump) {
+    const int order = whole_order(jump.size, half, slack);
+    if (order == 0) return;
+    const Index iz = jump.from / nx, ix = jump.from % nx;
+    if (const auto run = up_to_gap(map, iz, ix + 1, 1, order)) runs.push_back(*run);
+    if (const auto run = up_to_gap(map, iz, ix, -1, -order)) runs.push_back(*run);
+  };
   const FringeJump* open = nullptr;
   for (const FringeJump& jump : jumps) {
     if (jump.to != jump.from + 1) continue;
-    const bool same_row = open != nullptr && open->from / nx == jump.from / nx;
-    if (same_row && jump.from - open->from <= kLongest &&
-        std::abs(open->size + jump.size) <= slack) {
-      const double mean = 0.5 * (open->size - jump.size), order = std::round(mean / half);
-      if (order != 0.0 && std::abs(mean - order * half) <= slack) {
-        runs.push_back({jump.from / nx, open->to % nx, jump.from % nx, static_cast<int>(order)});
+    if (open != nullptr && open->from / nx == jump.from / nx &&
+        jump.from - open->from <= kLongest && std::abs(open->size + jump.size) <= slack) {
+      const int order = whole_order(0.5 * (open->size - jump.size), half, slack);
+      if (order != 0) {
+        runs.push_back({jump.from / nx, open->to % nx, jump.from % nx, order});
         open = nullptr;
         continue;
       }
     }
+    if (open != nullptr) half_open(*open);
     open = &jump;
   }
+  if (open != nullptr) half_open(*open);
   return runs;
 }
 
@@ -139,7 +168,7 @@ FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>
   constexpr double kMostUnclear = 0.1;  // of the pixels about a patch
   FringePatches found;
   const double half = 0.5 * wavelength.si();
-  for (const Island& island : join_runs(find_runs(jumps, map.grid.nx, half, noise.si()))) {
+  for (const Island& island : join_runs(find_runs(map, jumps, half, noise.si()))) {
     if (island.n_pixels < kFewest) continue;
     const double jump = island.order * half;
     // A third of the jump keeps both kinds apart whatever the noise.

@@ -18,12 +18,12 @@ struct FringePatches {
 /// Mends patches that the wall on both sides of them, along the flow, tells from itself.
 ///
 /// Along the flow a wall changes slowly. A patch begins on a row with a jump by a whole number of
-/// half wavelengths and ends, within 24 pixels, with the same jump back; rows that touch, or lie up
-/// to six apart (where a patch runs into missing pixels), make one patch. Each of its pixels, and
-/// those two pixels around, is then held against the straight line between the medians of five
-/// pixels on either side of the patch: those a whole number of half wavelengths off it are lifted,
-/// those near it stay, others are flagged. A patch whose surroundings do not follow that line (near
-/// a clamped end) is left alone.
+/// half wavelengths and ends, within 24 pixels, with the same jump back or in missing pixels; rows
+/// that touch, or lie up to six apart (where missing pixels hide its ends), make one patch. Each of
+/// its pixels, and those two pixels around, is then held against the straight line between the
+/// medians of five pixels on either side of the patch: those a whole number of half wavelengths off
+/// it are lifted, those near it stay, others are flagged. A patch whose surroundings do not follow
+/// that line (near a clamped end) is left alone.
 ///
 /// So a patch is found that lies across the clamped side or on a steep flank, where the map's own
 /// bend across the flow hides a part of its border.
