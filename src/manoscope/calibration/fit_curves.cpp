@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "manoscope/calibration/joint_labels.hpp"
 #include "manoscope/core/error.hpp"
 
 namespace manoscope::calibration {
@@ -36,10 +35,10 @@ std::vector<Group> group_levels(const std::vector<Level>& levels, double pooling
 }
 
 /// The pressures that the curves go through, and the errors they share.
-void settle_pressures(ConstitutiveCurves& curves, bool joint_labels) {
+void settle_pressures(ConstitutiveCurves& curves, bool joint_labels, const WallCurves* wall) {
   const auto n = static_cast<Index>(curves.levels.size());
   if (joint_labels) {
-    if (const auto joint = estimate_labels(curves.levels)) {
+    if (const auto joint = estimate_labels(curves.levels, wall)) {
       curves.level_pressure = joint->pressure;
       curves.label_response = joint->response;
       curves.label_effect = joint->root;
@@ -157,12 +156,13 @@ void FitCurvesOptions::validate() const {
   }
 }
 
-ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions& options) {
+ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions& options,
+                              const WallCurves* wall) {
   options.validate();
   ConstitutiveCurves result;
   result.levels = sort_levels(std::move(levels));
   result.x = result.levels.front().profile.x;
-  settle_pressures(result, options.joint_labels);
+  settle_pressures(result, options.joint_labels, wall);
   const std::vector<Level> estimated = result.estimated_levels();
   const PressureScale scale = fit_pressure_scale(estimated);
   const StationFitter fitter(estimated, options);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "manoscope/calibration/constitutive_curves.hpp"
+#include "manoscope/calibration/joint_labels.hpp"
 
 namespace manoscope::calibration {
 
@@ -36,7 +37,9 @@ struct FitCurvesOptions {
 /// kept as a fold if it is real: a buckled wall, whose readings there are ambiguous.
 ///
 /// @param levels  in any order; repeats of one pressure are averaged.
+/// @param wall    of a model fitted to an earlier fit of these levels, for their labels alone.
 /// @throws InputError as sort_levels().
-ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions& options = {});
+ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions& options = {},
+                              const WallCurves* wall = nullptr);
 
 }  // namespace manoscope::calibration

@@ -1,11 +1,16 @@
 #include "manoscope/calibration/joint_labels.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
+
+#include "manoscope/calibration/pressure_scale.hpp"
+#include "manoscope/calibration/snap.hpp"
+#include "manoscope/numerics/shape_spline.hpp"
 
 namespace manoscope::calibration {
 namespace {
@@ -13,6 +18,7 @@ namespace {
 /// The state of the wall at every level, and its standard uncertainty.
 struct States {
   Array1 value, sigma;  ///< (n) m
+  Array1 weight;        ///< (n_x) of the stations
 };
 
 /// Deflections projected on the difference between the highest and the lowest level, over the
@@ -35,7 +41,7 @@ std::optional<States> project(const std::vector<Level>& levels) {
     for (const ErrorMode& mode : level.profile.uncertainty.modes) ++seen[mode.variable];
   }
   const auto n = static_cast<Index>(levels.size());
-  States states{Array1(n), Array1(n)};
+  States states{Array1(n), Array1(n), weight};
   for (Index k = 0; k < n; ++k) {
     const Profile& profile = levels[static_cast<std::size_t>(k)].profile;
     states.value[k] = (weight * profile.zeta).sum();
@@ -46,6 +52,44 @@ std::optional<States> project(const std::vector<Level>& levels) {
     states.sigma[k] = std::sqrt(variance);
   }
   return states;
+}
+
+/// The pressures at which a model of the wall has the states; none if its own states do not rise.
+///
+/// In the coordinate in which its curve is nearly straight, a cubic between its pressures and a
+/// straight line beyond them.
+std::optional<Array1> model_pressures(const WallCurves& wall, const States& states) {
+  const Index n = wall.pressure.size();
+  const double range = wall.pressure[n - 1] - wall.pressure[0];
+  const Array1 own = (wall.deflection.matrix() * states.weight.matrix()).array();
+  if (n < 3 || !(own.tail(n - 1) > own.head(n - 1)).all()) return std::nullopt;
+  // The scale at which the middle of the range lies on the straight line between its ends.
+  double best = std::numeric_limits<double>::infinity(), unit = range;
+  for (double candidate = 1e-4 * range; candidate < 1e3 * range; candidate *= 1.3) {
+    const PressureScale scale(candidate);
+    const double low = scale.coordinate(wall.pressure[0]);
+    const double high = scale.coordinate(wall.pressure[n - 1]);
+    double off = 0.0;
+    for (Index k = 1; k + 1 < n; ++k) {
+      const double share = (own[k] - own[0]) / (own[n - 1] - own[0]);
+      off += std::pow((scale.coordinate(wall.pressure[k]) - low) / (high - low) - share, 2);
+    }
+    if (off < best) {
+      best = off;
+      unit = candidate;
+    }
+  }
+  const PressureScale scale(unit);
+  std::vector<double> at(own.begin(), own.end()), u;
+  for (const double pressure : wall.pressure) u.push_back(scale.coordinate(pressure));
+  const numerics::ShapeSpline spline(at, u);
+  Array1 result(states.value.size());
+  for (Index k = 0; k < result.size(); ++k) {
+    const double inside = std::clamp(states.value[k], own[0], own[n - 1]);
+    result[k] = scale.pressure(spline.value(inside) +
+                               spline.derivative(inside) * (states.value[k] - inside));
+  }
+  return result;
 }
 
 /// dp/ds at every level, by the line through it and its two neighbours in s.
@@ -85,17 +129,23 @@ struct Estimate {
 
 class LabelModel {
  public:
-  LabelModel(const States& states, const Array1& label, const Array1& sigma)
+  LabelModel(const States& states, const Array1& label, const Array1& sigma,
+             const std::optional<Array1>& model)
       : label_(label), scale_(label.maxCoeff() - label.minCoeff()) {
     const Index n = label.size();
     const double reach = states.value.abs().maxCoeff();
     const Array1 q = states.value / reach;
     const double low = states.value.minCoeff();
     const Array1 u = (states.value - low) / (states.value.maxCoeff() - low);
-    law_.resize(n, 3);
-    law_.col(0) = Array1::Constant(n, scale_);
-    law_.col(1) = scale_ * q;
-    law_.col(2) = scale_ * q.cube();
+    Matrix law(n, model ? 4 : 3);
+    law.col(0) = Array1::Ones(n);
+    law.col(1) = q;
+    law.col(2) = q.cube();
+    if (model) law.col(3) = *model / scale_;
+    // Terms that others make up (a model that is such a law itself) go.
+    Eigen::ColPivHouseholderQR<Matrix> factors(law);
+    factors.setThreshold(1e-6);
+    law_ = scale_ * Matrix(factors.householderQ()).leftCols(factors.rank());
     kernel_.resize(n, n);
     for (Index i = 0; i < n; ++i) {
       for (Index j = 0; j < n; ++j) {
@@ -145,9 +195,9 @@ class LabelModel {
   Array1 label_variance_, state_variance_;
 };
 
-}  // namespace
-
-std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
+/// Of levels on one branch of the wall's states.
+std::optional<JointLabels> estimate_branch(const std::vector<Level>& levels,
+                                           const WallCurves* wall) {
   constexpr Index kFewest = 6;
   constexpr double kSmallest = -14.0, kLargest = 3.0, kStep = 0.25;  // log of the rest's size
   constexpr double kWorstPull = 4.5;
@@ -164,7 +214,8 @@ std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
   const auto states = project(levels);
   if (!states || !(states->value.maxCoeff() > states->value.minCoeff())) return std::nullopt;
 
-  const LabelModel model(*states, label, sigma);
+  const LabelModel model(*states, label, sigma,
+                         wall != nullptr ? model_pressures(*wall, *states) : std::nullopt);
   std::vector<Estimate> estimates;
   double best = -std::numeric_limits<double>::infinity();
   for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
@@ -199,6 +250,25 @@ std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
   // Exact labels leave zero rows: the floor keeps the factor's pivots above round-off.
   covariance.diagonal().array() += 1e-12 * sigma.square().maxCoeff();
   joint.root = covariance.llt().matrixL();
+  return joint;
+}
+
+}  // namespace
+
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
+                                           const WallCurves* wall) {
+  const Index first = level_after_snap(levels).value_or(0);
+  const auto branch = estimate_branch({levels.begin() + first, levels.end()}, wall);
+  if (!branch || first == 0) return branch;
+  const auto n = static_cast<Index>(levels.size()), n_branch = n - first;
+  JointLabels joint{Array1(n), Matrix::Identity(n, n), Matrix::Zero(n, n)};
+  for (Index k = 0; k < first; ++k) {
+    joint.pressure[k] = levels[static_cast<std::size_t>(k)].pressure.si();
+    joint.root(k, k) = levels[static_cast<std::size_t>(k)].uncertainty.si();
+  }
+  joint.pressure.tail(n_branch) = branch->pressure;
+  joint.response.bottomRightCorner(n_branch, n_branch) = branch->response;
+  joint.root.bottomRightCorner(n_branch, n_branch) = branch->root;
   return joint;
 }
 

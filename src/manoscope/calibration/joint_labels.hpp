@@ -18,6 +18,12 @@ struct JointLabels {
   Matrix root;
 };
 
+/// What a model of the wall deflects under uniform pressure: of use for its shape, not its scale.
+struct WallCurves {
+  Array1 pressure;    ///< (n) Pa, ascending, n >= 3
+  Array2 deflection;  ///< (n, n_x) m, rising with the pressure, at the stations of the levels
+};
+
 /// What the labels of all levels together say of each one's pressure.
 ///
 /// The error of a label is the same at every station, so the wall as a whole tells it: its state is
@@ -33,10 +39,17 @@ struct JointLabels {
 /// with e times the size, so that the bias of smoothing stays below the uncertainty. A wall that
 /// follows no such law keeps its labels almost as they were read.
 ///
+/// A model of the wall adds a term to F, d p_m(s), p_m(s) the pressure at which the model's
+/// deflections have the state s: the rest is then only what the model's *shape* of p(s) misses. Of
+/// a wall that snaps through (level_after_snap()) the levels behind the jump alone are estimated;
+/// those before it keep their labels.
+///
 /// @param levels  ascending in pressure, on the same stations.
+/// @param wall    a wall fitted to this calibration, if there is one.
 /// @return none where fewer than six labels have an uncertainty, fewer than five stations count in
 /// every level, or a label lies more than 4.5 standard uncertainties off what the others say: then
 /// something else is wrong, and labels stay as they are.
-std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels);
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
+                                           const WallCurves* wall = nullptr);
 
 }  // namespace manoscope::calibration

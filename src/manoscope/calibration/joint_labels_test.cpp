@@ -57,13 +57,25 @@ struct Quality {
   int estimated = 0;
 };
 
-Quality judge(const WallLaw& law, double low, double high) {
+/// A model of a wall at the stations of a campaign: its law, with states from low to high.
+WallCurves model_of(const WallLaw& law, double low, double high) {
+  constexpr Index kStates = 20, kStations = 8;
+  WallCurves model{Array1(kStates), Array2(kStates, kStations)};
+  for (Index k = 0; k < kStates; ++k) {
+    const double s = low + (high - low) * static_cast<double>(k) / (kStates - 1);
+    model.pressure[k] = law(s) - law(low);
+    model.deflection.row(k) = s * Array1::LinSpaced(kStations, 0.8, 1.2).transpose();
+  }
+  return model;
+}
+
+Quality judge(const WallLaw& law, double low, double high, const WallCurves* wall = nullptr) {
   constexpr int kTrials = 60;
   Quality quality;
   double errors = 0.0, pulls = 0.0, n = 0.0;
   for (int trial = 0; trial < kTrials; ++trial) {
     const Campaign made = campaign(law, low, high, static_cast<std::uint64_t>(trial));
-    const auto joint = estimate_labels(made.levels);
+    const auto joint = estimate_labels(made.levels, wall);
     if (!joint) continue;
     ++quality.estimated;
     const Array1 off = joint->pressure - made.truth;
@@ -89,6 +101,42 @@ TEST(JointLabels, TakeAThirdOfTheNoiseOffLabelsOfASmoothWallAndSayHowWell) {
     // 60 campaigns of some five independent errors: 4 %, four times.
     EXPECT_NEAR(quality.width, 1.0, 0.17);
   }
+}
+
+TEST(JointLabels, AModelOfTheWallTakesMoreOffAlsoWithAWrongScale) {
+  // No cubic: it softens from the plane to 20 um, as a wall does that turns from one shape to
+  // another.
+  const WallLaw turning = [](double s) {
+    return membrane(s) + 600.0 * std::tanh(s / 6e-6) * std::exp(-std::pow(s / 20e-6, 2));
+  };
+  const Quality alone = judge(turning, 0.0, 40e-6);
+  // E off by 5 %, so that the model's pressures are; states beyond those of the levels are missing.
+  const WallCurves off = model_of([&](double s) { return 1.05 * turning(s); }, 0.0, 38e-6);
+  const Quality helped = judge(turning, 0.0, 40e-6, &off);
+  EXPECT_LT(helped.rms, 0.9 * alone.rms);
+  // Four free numbers among 23 labels.
+  EXPECT_LT(helped.rms, 1.2 * kLabelNoise * std::sqrt(4.0 / 23.0));
+  EXPECT_NEAR(helped.width, 1.0, 0.2);
+  // A model of another wall does no harm.
+  const WallCurves other = model_of(buckled, 9e-6, 40e-6);
+  const Quality misled = judge(turning, 0.0, 40e-6, &other);
+  EXPECT_LT(misled.rms, 1.1 * alone.rms);
+  EXPECT_NEAR(misled.width, 1.0, 0.2);
+}
+
+TEST(JointLabels, OfAWallThatSnapsAreEstimatedBehindTheJump) {
+  Campaign made = campaign(membrane, 10e-6, 45e-6, 5);
+  for (std::size_t k = 0; k < 4; ++k) {
+    made.levels[k].profile.zeta = made.levels[k].profile.zeta - 40e-6;
+  }
+  const auto joint = estimate_labels(made.levels);
+  ASSERT_TRUE(joint);
+  for (Index k = 0; k < 4; ++k) {
+    EXPECT_EQ(joint->pressure[k], made.levels[static_cast<std::size_t>(k)].pressure.si());
+    EXPECT_EQ(joint->response(k, k), 1.0);
+  }
+  const Array1 behind = (joint->pressure - made.truth).tail(20);
+  EXPECT_LT(std::sqrt(behind.square().mean()), 0.75 * kLabelNoise);
 }
 
 TEST(JointLabels, LeaveTheLabelsOfAWallWithoutALawAlmostAsTheyWere) {

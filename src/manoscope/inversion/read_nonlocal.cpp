@@ -80,7 +80,7 @@ double count_together(const Array1& residual) {
 
 /// How far the model's curve lies off the measured one about each reading, Pa.
 Array1 offset_of_curves(const PressureReading& local, const NonlocalWall& wall) {
-  const Array1& levels = wall.level_pressure;
+  const Array1& levels = wall.uniform.pressure;
   Array1 offset = Array1::Zero(local.x.size());
   for (Index i = 0; i < local.x.size(); ++i) {
     if (!local.answered(i)) continue;
@@ -341,27 +341,6 @@ ModelLevels model_levels(const Array1& estimates) {
   return levels;
 }
 
-/// (model minus measured deflection)/compliance at the levels, Pa; the compliance by the model's
-/// neighbouring levels.
-Array2 curve_offset(const calibration::ConstitutiveCurves& curves, const ModelLevels& levels,
-                    const Array2& profiles) {
-  const Index n = levels.pressure.size();
-  Array2 offset = Array2::Zero(n, profiles.cols());
-  for (std::size_t k = 0; k < levels.of_level.size(); ++k) {
-    const Index j = levels.of_level[k];
-    const Index low = std::max<Index>(0, j - 1), high = std::min(n - 1, j + 1);
-    const Profile& profile = curves.levels[k].profile;
-    for (Index i = 0; i < profiles.cols(); ++i) {
-      if (profile.flags[i] != 0) continue;
-      const double rise = profiles(high, i) - profiles(low, i);
-      if (!(rise > 0.0)) continue;
-      offset(j, i) = (profiles(j, i) - profile.zeta[i]) *
-                     (levels.pressure[high] - levels.pressure[low]) / rise;
-    }
-  }
-  return offset;
-}
-
 }  // namespace
 
 void ReadNonlocalOptions::validate() const {
@@ -372,6 +351,26 @@ void ReadNonlocalOptions::validate() const {
   if (!(largest_model_error > 0.0 && largest_model_error <= 1.0)) {
     throw InputError("--largest-model-error", fmt::format("is {}", largest_model_error),
                      "Give a number above 0, at most 1");
+  }
+}
+
+void update_offset(NonlocalWall& wall, const calibration::ConstitutiveCurves& curves) {
+  const Array1& pressure = wall.uniform.pressure;
+  const Array2& profiles = wall.uniform.deflection;
+  const Index n = pressure.size();
+  wall.curve_offset = Array2::Zero(n, profiles.cols());
+  for (Index j = 0; j < n; ++j) {
+    Index k = 0;  // the level that this state of the model stands for
+    (curves.level_pressure - pressure[j]).abs().minCoeff(&k);
+    const Index low = std::max<Index>(0, j - 1), high = std::min(n - 1, j + 1);
+    const Profile& profile = curves.levels[static_cast<std::size_t>(k)].profile;
+    for (Index i = 0; i < profiles.cols(); ++i) {
+      const double rise = profiles(high, i) - profiles(low, i);
+      if (profile.flags[i] != 0 || !(rise > 0.0)) continue;
+      wall.curve_offset(j, i) =
+          (profiles(j, i) - profile.zeta[i]) * (pressure[high] - pressure[low]) / rise +
+          curves.level_pressure[k] - pressure[j];
+    }
   }
 }
 
@@ -396,10 +395,10 @@ std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCu
     reason = fmt::format("{} {}", error.where(), error.found());
     return std::nullopt;
   }
-  const Array2 profiles = wall.response->profiles(curves.x);
+  wall.uniform = {levels.pressure, wall.response->profiles(curves.x)};
   Array2 model(static_cast<Index>(levels.of_level.size()), curves.x.size());
   for (std::size_t k = 0; k < levels.of_level.size(); ++k) {
-    model.row(static_cast<Index>(k)) = profiles.row(levels.of_level[k]);
+    model.row(static_cast<Index>(k)) = wall.uniform.deflection.row(levels.of_level[k]);
   }
   calibrated->model_error =
       std::max(kLeastError, kPerMisfit * end_misfit(curves, model, known.length, known.width));
@@ -409,12 +408,11 @@ std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCu
     return std::nullopt;
   }
   wall.calibrated = *calibrated;
-  wall.level_pressure = levels.pressure;
   const Index n_nodes = wall.response->nodes().size();
   const double middle = levels.pressure[levels.pressure.size() / 2];
   wall.half_wavelength = wall.response->half_wavelength(
       wall.response->answer(Eigen::VectorXd::Constant(n_nodes, middle)).kernel, n_nodes / 2);
-  wall.curve_offset = curve_offset(curves, levels, profiles);
+  update_offset(wall, curves);
   return wall;
 }
 

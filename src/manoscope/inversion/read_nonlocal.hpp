@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "manoscope/calibration/joint_labels.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/inversion/calibrate_wall.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
@@ -37,8 +38,10 @@ struct NonlocalWall {
   CalibratedWall calibrated;
   std::shared_ptr<const WallResponse> response;
   double half_wavelength = 0.0;  ///< m, at mid-channel under the middle level
-  Array1 level_pressure;         ///< (n_levels) Pa, ascending
-  /// (n_levels, n_x) Pa: by how much the model's curves lie off the measured ones, at the levels.
+  /// The model under uniform pressure: at the levels, those that agree within 2e-4 of the range
+  /// counted once, and at the stations of the calibration.
+  calibration::WallCurves uniform;
+  /// (as uniform.deflection) Pa: by how much the model's curves lie off the measured ones.
   Array2 curve_offset;
 };
 
@@ -50,6 +53,10 @@ std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCu
                                                const WallKnowledge& known,
                                                const ReadNonlocalOptions& options,
                                                const Monitor& monitor, std::string& reason);
+
+/// Forms curve_offset anew for curves whose levels have other pressures than those that the wall
+/// was fitted to.
+void update_offset(NonlocalWall& wall, const calibration::ConstitutiveCurves& curves);
 
 /// A reading that takes the wall's neighbourhood into account.
 struct NonlocalReading {

@@ -224,13 +224,18 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   const maps::FoundPlace place = place_channel(experiment);
   const ReducedExperiment reduced =
       reduce_maps(experiment, place.frame, options.reduce, n_threads, monitor);
-  const calibration::ConstitutiveCurves curves =
-      calibration::fit_curves(make_levels(experiment, reduced.hydrostatic), options.curves);
+  const std::vector<calibration::Level> levels = make_levels(experiment, reduced.hydrostatic);
+  calibration::ConstitutiveCurves curves = calibration::fit_curves(levels, options.curves);
 
   const std::vector<FlowRun> runs = make_runs(experiment, reduced.flow);
   std::string no_wall;
-  const auto wall =
+  auto wall =
       runs.empty() ? std::nullopt : find_wall(experiment, curves, options, monitor, no_wall);
+  if (wall && options.curves.joint_labels) {
+    // The wall says how its curves run between the levels: once more, what each label is worth.
+    curves = calibration::fit_curves(levels, options.curves, &wall->uniform);
+    inversion::update_offset(*wall, curves);
+  }
   std::vector<RunFindings> findings(runs.size());
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(runs.size()), n_threads, [&](Index r) {
