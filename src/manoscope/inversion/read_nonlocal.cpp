@@ -12,6 +12,7 @@
 #include "manoscope/core/flags.hpp"
 #include "manoscope/numerics/natural_spline.hpp"
 #include "manoscope/numerics/penalised_fit.hpp"
+#include "manoscope/numerics/robust.hpp"
 
 namespace manoscope::inversion {
 namespace {
@@ -53,15 +54,6 @@ Array1 interpolation_variance(const PressureReading& reading) {
   return variance;
 }
 
-/// Square root of the sum of squares of the effects of one source.
-Array1 effect_of(const PressureReading& reading, const std::string& source) {
-  Array1 squares = Array1::Zero(reading.x.size());
-  for (const ErrorMode& mode : reading.uncertainty.modes) {
-    if (mode.source == source) squares += mode.effect.square();
-  }
-  return squares.sqrt();
-}
-
 /// Number of neighbouring stations whose errors are one: 1 + 2 sum of the autocorrelation up to its
 /// first lag that is not clear of 0.
 double count_together(const Array1& residual) {
@@ -78,24 +70,52 @@ double count_together(const Array1& residual) {
   return together;
 }
 
-/// How far the model's curve lies off the measured one about each reading, Pa.
-Array1 offset_of_curves(const PressureReading& local, const NonlocalWall& wall) {
-  const Array1& levels = wall.uniform.pressure;
-  Array1 offset = Array1::Zero(local.x.size());
-  for (Index i = 0; i < local.x.size(); ++i) {
-    if (!local.answered(i)) continue;
-    const Index above =
-        std::upper_bound(levels.begin(), levels.end(), local.pressure[i]) - levels.begin();
-    const Index k = std::clamp<Index>(above, 1, levels.size() - 1);
-    offset[i] = std::max(std::abs(wall.curve_offset(k - 1, i)), std::abs(wall.curve_offset(k, i)));
+/// Pressures of the measured curves and those of the model at which the wall deflects alike.
+class ModelScale {
+ public:
+  explicit ModelScale(const NonlocalWall& wall)
+      : own_(wall.uniform.pressure), model_(own_ - wall.offset) {
+    const Index n = own_.size();
+    // Offsets that would turn the order of levels are none that could be taken back.
+    if (!(model_.tail(n - 1) > model_.head(n - 1)).all()) model_ = own_;
   }
-  return offset;
+  double to_model(double pressure) const { return map(own_, model_, pressure); }
+  double from_model(double pressure) const { return map(model_, own_, pressure); }
+  /// Half of what the offset changes over the step between levels around a pressure, Pa.
+  double doubt(double pressure) const {
+    const Index k = step(own_, pressure);
+    return 0.5 * std::abs((model_[k] - own_[k]) - (model_[k - 1] - own_[k - 1]));
+  }
+
+ private:
+  /// The upper end of the step around a value; of the first or last step beyond them.
+  static Index step(const Array1& from, double value) {
+    const Index above = std::upper_bound(from.begin(), from.end(), value) - from.begin();
+    return std::clamp<Index>(above, 1, from.size() - 1);
+  }
+  /// Straight lines between the levels; shifted alike beyond them.
+  static double map(const Array1& from, const Array1& to, double value) {
+    const Index k = step(from, value);
+    const double share = std::clamp((value - from[k - 1]) / (from[k] - from[k - 1]), 0.0, 1.0);
+    const double at = from[k - 1] + share * (from[k] - from[k - 1]);
+    return to[k - 1] + share * (to[k] - to[k - 1]) + (value - at);
+  }
+  Array1 own_, model_;
+};
+
+/// The same reading, counted in the pressures of the model.
+PressureReading in_model(PressureReading local, const ModelScale& scale) {
+  for (Index i = 0; i < local.x.size(); ++i) {
+    if (local.answered(i)) local.pressure[i] = scale.to_model(local.pressure[i]);
+  }
+  return local;
 }
 
 class Reader {
  public:
   Reader(const PressureReading& local, const NonlocalWall& wall, const ReadNonlocalOptions& options)
-      : local_(local),
+      : scale_(wall),
+        local_(in_model(local, scale_)),
         wall_(wall),
         options_(options),
         width_(wall.calibrated.wall.width.si()),
@@ -106,9 +126,9 @@ class Reader {
         sampling_(spline_.sampling(local.x)),
         inner_sampling_(inner_.sampling(local.x)),
         interpolation_(interpolation_variance(local)),
-        labels_(effect_of(local, "pressure labels")),
-        offset_(offset_of_curves(local, wall)) {
+        offset_(Array1::Zero(local.x.size())) {
     for (Index i = 0; i < local.x.size(); ++i) {
+      if (local.answered(i)) offset_[i] = scale_.doubt(local.pressure[i]);
       const double distance = std::min(local.x[i], length_ - local.x[i]);
       if (local.answered(i) && distance > kEndGap * width_) used_.push_back(i);
     }
@@ -217,8 +237,8 @@ class Reader {
       const Index i = used_[static_cast<std::size_t>(a)];
       const double own = local_.uncertainty.independent[i];
       step.noise[a] = own * own;
-      const double doubt = std::pow(wall_.calibrated.model_error * off[i], 2) +
-                           std::pow(std::hypot(labels_[i], offset_[i]) * uniform[i], 2);
+      const double doubt =
+          std::pow(wall_.calibrated.model_error * off[i], 2) + std::pow(offset_[i] * uniform[i], 2);
       variance[a] = std::max(step.noise[a], 1e-12) + interpolation_[i] + together * doubt;
       model.row(a) = sampling_.row(i) + inner_sampling_.row(i) * change;
       target[a] =
@@ -258,6 +278,7 @@ class Reader {
     PressureReading reading;
     reading.x = local_.x;
     reading.pressure = (sampling_ * pressure).array();
+    for (double& p : reading.pressure) p = scale_.from_model(p);
     reading.slope = local_.slope;
     reading.flags = local_.flags;
     const Matrix& nodes = spline_.from_coefficients();
@@ -295,14 +316,15 @@ class Reader {
     return reading;
   }
 
-  const PressureReading& local_;
+  ModelScale scale_;
+  PressureReading local_;
   const NonlocalWall& wall_;
   const ReadNonlocalOptions& options_;
   double width_, length_;
   Array1 nodes_;
   numerics::NaturalSpline spline_, inner_;
   Matrix sampling_, inner_sampling_;
-  Array1 interpolation_, labels_, offset_;
+  Array1 interpolation_, offset_;
   std::vector<Index> used_;
   std::vector<numerics::Penalty> penalties_;
   Array1 trust_;         ///< (n_used) of the last step
@@ -355,22 +377,28 @@ void ReadNonlocalOptions::validate() const {
 }
 
 void update_offset(NonlocalWall& wall, const calibration::ConstitutiveCurves& curves) {
+  constexpr double kMargin = 0.5;  // widths
   const Array1& pressure = wall.uniform.pressure;
   const Array2& profiles = wall.uniform.deflection;
+  const double length = wall.calibrated.wall.length.si();
+  const double margin = kMargin * wall.calibrated.wall.width.si();
   const Index n = pressure.size();
-  wall.curve_offset = Array2::Zero(n, profiles.cols());
+  wall.offset = Array1::Zero(n);
   for (Index j = 0; j < n; ++j) {
     Index k = 0;  // the level that this state of the model stands for
     (curves.level_pressure - pressure[j]).abs().minCoeff(&k);
     const Index low = std::max<Index>(0, j - 1), high = std::min(n - 1, j + 1);
     const Profile& profile = curves.levels[static_cast<std::size_t>(k)].profile;
+    std::vector<double> offsets;
     for (Index i = 0; i < profiles.cols(); ++i) {
       const double rise = profiles(high, i) - profiles(low, i);
-      if (profile.flags[i] != 0 || !(rise > 0.0)) continue;
-      wall.curve_offset(j, i) =
-          (profiles(j, i) - profile.zeta[i]) * (pressure[high] - pressure[low]) / rise +
-          curves.level_pressure[k] - pressure[j];
+      const bool inside = curves.x[i] > margin && curves.x[i] < length - margin;
+      if (!inside || profile.flags[i] != 0 || !(rise > 0.0)) continue;
+      const double compliance = rise / (pressure[high] - pressure[low]);
+      offsets.push_back((profiles(j, i) - profile.zeta[i]) / compliance + curves.level_pressure[k] -
+                        pressure[j]);
     }
+    if (!offsets.empty()) wall.offset[j] = numerics::median(offsets);
   }
 }
 

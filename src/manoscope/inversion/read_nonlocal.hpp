@@ -41,8 +41,9 @@ struct NonlocalWall {
   /// The model under uniform pressure: at the levels, those that agree within 2e-4 of the range
   /// counted once, and at the stations of the calibration.
   calibration::WallCurves uniform;
-  /// (as uniform.deflection) Pa: by how much the model's curves lie off the measured ones.
-  Array2 curve_offset;
+  /// (as uniform.pressure) Pa: the model under p - offset deflects as the wall did under p; median
+  /// over the stations farther than half a width from the ends.
+  Array1 offset;
 };
 
 /// Fits a wall to the calibration and solves it at the levels.
@@ -54,7 +55,7 @@ std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCu
                                                const ReadNonlocalOptions& options,
                                                const Monitor& monitor, std::string& reason);
 
-/// Forms curve_offset anew for curves whose levels have other pressures than those that the wall
+/// Forms the offset anew for curves whose levels have other pressures than those that the wall
 /// was fitted to.
 void update_offset(NonlocalWall& wall, const calibration::ConstitutiveCurves& curves);
 
@@ -70,7 +71,8 @@ struct NonlocalReading {
 /// Reads p(x) as the pressure whose wall response gives the observed deflection.
 ///
 /// A station-by-station reading r(x) of the deflection (read_pressure()) is R[p](x) of
-/// WallResponse plus noise. p is a natural cubic spline through the response's nodes that minimises
+/// WallResponse plus noise, both counted in the pressures of the model (NonlocalWall::offset). p is
+/// a natural cubic spline through the response's nodes that minimises
 ///
 ///   sum_i (r_i - R[p](x_i))^2 / v_i + weight int p''(x)^2 / s(x) dx,
 ///
@@ -81,8 +83,8 @@ struct NonlocalReading {
 /// finer than `finest_ripple` would be asked of a wall that hardly shows them. v_i is the
 /// station's own noise; the doubt of
 /// interpolation, one error over all stations between two levels; and as noise of a correlation
-/// length of 0.3 widths: model_error times the correction R - p, and the labels' uncertainty and
-/// the offset of the model's curves where the correction changes with pressure as such (at a
+/// length of 0.3 widths: model_error times the correction R - p, and half of what the
+/// offset changes from level to level where the correction changes with pressure as such (at a
 /// buckling front).
 ///
 /// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, times the number

@@ -25,6 +25,31 @@ wall::FopplVonKarmanOptions grid_options(double highest) {
   return options;
 }
 
+/// Curves as a calibration would draw them.
+/// @param deflection  (n_levels, n) m.
+std::vector<calibration::ConstitutiveCurve> curves_through(const Array1& pressures,
+                                                           const Array2& deflection) {
+  std::vector<calibration::Level> levels;
+  for (Index k = 0; k < pressures.size(); ++k) {
+    calibration::Level level;
+    level.pressure = Pressure::from_si(pressures[k]);
+    level.profile.x = Array1::LinSpaced(deflection.cols(), 0.0, 1.0);
+    level.profile.zeta = deflection.row(k);
+    level.profile.flags = Flags1::Zero(deflection.cols());
+    levels.push_back(std::move(level));
+  }
+  const calibration::PressureScale scale = calibration::fit_pressure_scale(levels);
+  std::vector<calibration::ConstitutiveCurve> curves;
+  for (Index i = 0; i < deflection.cols(); ++i) {
+    std::vector<calibration::ConstitutiveCurve::Knot> knots;
+    for (Index k = 0; k < pressures.size(); ++k) {
+      knots.push_back({{k}, pressures[k], deflection(k, i)});
+    }
+    curves.emplace_back(scale, std::move(knots));
+  }
+  return curves;
+}
+
 }  // namespace
 
 Array1 response_nodes(Length length, Length width) {
@@ -79,6 +104,7 @@ WallResponse::WallResponse(const wall::ClampedWall& wall, const Array1& levels,
     throw InputError("wall model", "falls somewhere while the pressure rises",
                      "Such a wall is read station by station");
   }
+  curves_ = curves_through(levels_, inside(deflection_));
 }
 
 Array2 WallResponse::profiles(const Array1& x) const {
@@ -97,14 +123,9 @@ WallResponse::Inverse WallResponse::invert(Index node, double deflection) const 
     const double slope = 1.0 / compliance_(end, node);
     return {levels_[end] + slope * (deflection - of(end)), slope};
   }
-  Index k = 1;
-  while (k < n - 1 && of(k) < deflection) ++k;
-  // The cubic p(zeta) with both pressures and both slopes: exact for p = a zeta + b zeta^3.
-  const double h = of(k) - of(k - 1), s = (deflection - of(k - 1)) / h;
-  const double m0 = h / compliance_(k - 1, node), m1 = h / compliance_(k, node);
-  const double step = levels_[k] - levels_[k - 1];
-  const double c2 = 3.0 * step - 2.0 * m0 - m1, c3 = m0 + m1 - 2.0 * step;
-  return {levels_[k - 1] + s * (m0 + s * (c2 + s * c3)), (m0 + s * (2.0 * c2 + s * 3.0 * c3)) / h};
+  const calibration::ConstitutiveCurve& curve = curves_[static_cast<std::size_t>(node - 1)];
+  const double pressure = curve.pressures(deflection).front();
+  return {pressure, 1.0 / curve.slope(pressure)};
 }
 
 WallResponse::Answer WallResponse::answer(const Eigen::VectorXd& pressure) const {

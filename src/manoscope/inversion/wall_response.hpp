@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "manoscope/calibration/constitutive_curves.hpp"
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/core/units.hpp"
@@ -21,7 +22,9 @@ Array1 response_nodes(Length length, Length width);
 /// neighbourhood, so the reading R(x) is not p(x): inside it is p smoothed over the wall's reach,
 /// near a clamped end it is biased towards the inside. R and its derivative K = dR(x)/dp(x') are
 /// computed from the same wall model both times: errors of the model that change curve and
-/// deflection alike cancel.
+/// deflection alike cancel. The model's curves run through its states at the levels as those of a
+/// calibration do (calibration::ConstitutiveCurve), so that R also holds what such a curve misses
+/// where the wall turns sharply between two levels.
 class WallResponse {
  public:
   /// Solves the wall at uniform pressures, ascending, at least 3, Pa: of the calibration's levels.
@@ -37,7 +40,7 @@ class WallResponse {
   /// Reading of a pressure, and its derivative.
   struct Answer {
     Eigen::VectorXd reading;  ///< (n) Pa at the nodes; at the two ends, p itself
-    Matrix kernel;            ///< (n, n) dR_i / dp_j; rows of uniform walls sum to 1
+    Matrix kernel;            ///< (n, n) dR_i / dp_j; rows sum to 1 where the curve is true
   };
   /// @param pressure  (n) Pa at the nodes, linear in between.
   /// @throws InputError if the wall has no equilibrium near that of a uniform pressure.
@@ -51,7 +54,8 @@ class WallResponse {
   wall::FopplVonKarman wall_;
   Array1 nodes_, levels_;
   std::vector<wall::WallState> states_;
-  Array2 deflection_, compliance_;  ///< (n_levels, n) at the nodes
+  Array2 deflection_, compliance_;                      ///< (n_levels, n) at the nodes
+  std::vector<calibration::ConstitutiveCurve> curves_;  ///< of the nodes between the ends
 
   /// Pressure at which the wall's own curve has this deflection at a node, and dp/dzeta there.
   struct Inverse {
