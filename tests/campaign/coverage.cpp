@@ -33,7 +33,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHeader =
     "base,wall,seed,run,stretch,label_noise_Pa,n_levels,n_along,nonlocal,drop_Pa,n_answered,"
-    "n_silent,rms_Pa,largest_Pa,mean_Pa,pull_mean,pull_rms,coverage_68,coverage_95,budget\n";
+    "n_silent,rms_Pa,largest_Pa,mean_Pa,pull_mean,pull_rms,coverage_68,coverage_95,within_band,"
+    "budget\n";
 
 struct Stretch {
   const char* name;
@@ -65,12 +66,13 @@ std::set<std::string> members_done(const fs::path& file) {
   return done;
 }
 
+/// @param within_band  1 or 0; empty where the row is of no band.
 std::string row(const std::string& front, const validation::Judgement& judged,
-                const std::string& budget) {
-  return front + fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4f},{:.4f},{:.4f},{:.4f},{}\n",
+                const std::string& within_band, const std::string& budget) {
+  return front + fmt::format("{},{},{:.4g},{:.4g},{:.4g},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n",
                              judged.n_answered, judged.n_silent, judged.rms, judged.largest,
                              judged.mean, judged.pull_mean, judged.pull_rms, judged.coverage_68,
-                             judged.coverage, budget);
+                             judged.coverage, within_band, budget);
 }
 
 /// Mean variance by source, Pa2, over the stations that count: "source=variance;...".
@@ -99,6 +101,18 @@ validation::Judgement judge_drop(const results::Measurement& m, Index r, const A
                                    one(p[0] - p[1]));
 }
 
+/// All answered stations, and whether the simultaneous band holds every one of them.
+std::string whole_row(const std::string& front, const results::Measurement& m, Index r,
+                      const Array1& truth) {
+  const Array1 p = m.pressure.row(r), u = m.pressure_uncertainty.row(r);
+  const Flags1 answered = pipeline::answers(Flags1::Ones(p.size()), p);
+  const auto judged = validation::judge_reading(answered, p, u, m.pressure_lower.row(r),
+                                                m.pressure_upper.row(r), truth);
+  const Array1 off = (p - truth).abs() - m.pressure_band_factor[r] * u;
+  const bool within = (answered == 0 || off <= 0.0).all();
+  return row(front, judged, within ? "1" : "0", "");
+}
+
 std::string rows_of(const Member& member, const twin::Scenario& scenario,
                     const results::Measurement& m, const twin::Truth& truth) {
   std::string rows;
@@ -112,6 +126,7 @@ std::string rows_of(const Member& member, const twin::Scenario& scenario,
                          scenario.gauge.noise.si(), scenario.levels.size(), scenario.camera.n_along,
                          std::isnan(m.half_response_wavelength[r]) ? 0 : 1, drop);
     };
+    rows += whole_row(front("whole"), m, r, expected);
     for (const Stretch& stretch : kStretches) {
       const Flags1 inside = pipeline::within(m.x, stretch.start, stretch.end);
       const Flags1 answered = pipeline::answers(inside, m.pressure.row(r));
@@ -119,10 +134,10 @@ std::string rows_of(const Member& member, const twin::Scenario& scenario,
           validation::judge_reading(answered, m.pressure.row(r), m.pressure_uncertainty.row(r),
                                     m.pressure_lower.row(r), m.pressure_upper.row(r), expected);
       judged.n_silent = (inside != 0).count() - judged.n_answered;
-      rows += row(front(stretch.name), judged, budget_text(m, r, answered));
+      rows += row(front(stretch.name), judged, "", budget_text(m, r, answered));
     }
     if (std::isfinite(m.extracted_drop[r])) {
-      rows += row(front("drop"), judge_drop(m, r, expected), "");
+      rows += row(front("drop"), judge_drop(m, r, expected), "", "");
     }
   }
   return rows;

@@ -89,7 +89,7 @@ void add_empty_runs(Measurement& m, Index n_r, Index n_x) {
   for (Array1* array :
        {&m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
         &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
-        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength}) {
+        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength, &m.pressure_band_factor}) {
     *array = nan1(n_r);
   }
   m.pressure_flags = Flags2::Zero(n_r, n_x);
@@ -211,6 +211,7 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   m.parasitic_drop(run) = 0.11 * flow.drop;
   if (run != 2) m.transducer_drop(run) = flow.drop + m.parasitic_drop(run) + 25.0 * noise.normal();
   m.half_response_wavelength(run) = 1.1e-3;
+  m.pressure_band_factor(run) = 2.9;
   m.en_number(run) =
       std::abs(m.extracted_drop(run) - m.resistance_drop(run)) /
       (2.0 * std::hypot(m.extracted_drop_uncertainty(run), m.resistance_drop_uncertainty(run)));

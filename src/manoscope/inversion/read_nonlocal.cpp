@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -111,6 +112,51 @@ PressureReading in_model(PressureReading local, const ModelScale& scale) {
   return local;
 }
 
+/// Errors that stations share, of known shape and unit variance, beside errors of their own:
+/// V = diag(1/weight) + E E^T.
+class SharedErrors {
+ public:
+  /// @param effect  E, (n, k), k from 0.
+  SharedErrors(const Matrix& effect, const Array1& weight)
+      : effect_(effect),
+        weight_(weight),
+        weighted_(weight.matrix().asDiagonal() * effect),
+        factors_(Matrix::Identity(effect.cols(), effect.cols()) + effect.transpose() * weighted_) {}
+
+  /// V^-1 times columns, by the formula of Sherman, Morrison and Woodbury.
+  Matrix weighted(const Matrix& columns) const {
+    return weight_.matrix().asDiagonal() * columns -
+           weighted_ * factors_.solve(weighted_.transpose() * columns);
+  }
+  /// What is left of residuals once the most likely shared errors are taken off.
+  Vector own_part(const Vector& residual) const {
+    return residual - effect_ * factors_.solve(weighted_.transpose() * residual);
+  }
+
+ private:
+  const Matrix& effect_;
+  Array1 weight_;
+  Matrix weighted_;
+  Eigen::LLT<Matrix> factors_;
+};
+
+/// Effects of the modes of one source on some stations, a column a mode.
+Matrix effects_of(const PressureReading& reading, const std::string& source,
+                  const std::vector<Index>& stations) {
+  std::vector<const ErrorMode*> modes;
+  for (const ErrorMode& mode : reading.uncertainty.modes) {
+    if (mode.source == source) modes.push_back(&mode);
+  }
+  Matrix effects(static_cast<Index>(stations.size()), static_cast<Index>(modes.size()));
+  for (Index a = 0; a < effects.rows(); ++a) {
+    for (Index j = 0; j < effects.cols(); ++j) {
+      effects(a, j) =
+          modes[static_cast<std::size_t>(j)]->effect[stations[static_cast<std::size_t>(a)]];
+    }
+  }
+  return effects;
+}
+
 class Reader {
  public:
   Reader(const PressureReading& local, const NonlocalWall& wall, const ReadNonlocalOptions& options)
@@ -132,6 +178,7 @@ class Reader {
       const double distance = std::min(local.x[i], length_ - local.x[i]);
       if (local.answered(i) && distance > kEndGap * width_) used_.push_back(i);
     }
+    shared_ = effects_of(local_, "registration", used_);
     trust_ = Array1::Ones(static_cast<Index>(used_.size()));
     const Array1 standard = local.uncertainty.standard();
     for (const Index i : used_) enough_ += kStepShare * standard[i];
@@ -246,10 +293,11 @@ class Reader {
     }
     model = model * spline_.from_coefficients();
     const Array1 weight = trust_ / variance;
-    const Matrix weighted = weight.matrix().asDiagonal() * model;
-    const numerics::NormalEquations data{model.transpose() * weighted,
-                                         weighted.transpose() * target,
-                                         (weight * target.array().square()).sum()};
+    const SharedErrors shared(shared_, weight);
+    const Matrix weighted = shared.weighted(model);  // V^-1 J
+    const Vector weighted_target = shared.weighted(target);
+    const numerics::NormalEquations data{
+        model.transpose() * weighted, weighted.transpose() * target, target.dot(weighted_target)};
     // A smoothing spline passes half of a ripple if weight (2 pi/ripple)^4 is the density of the
     // stations over their variance (Green & Silverman 1994, sec. 3.7).
     const double floor = weight.mean() / spacing * std::pow(ripple / (2.0 * std::numbers::pi), 4);
@@ -257,10 +305,9 @@ class Reader {
                                                   {settled_->weight, 0})
                         : numerics::fit_penalised(data, penalties_, {floor, 24});
     if (settled_) step.fit.penalty = settled_->penalty;
-    step.together =
-        count_together((target - model * step.fit.coefficients).array() / variance.sqrt());
-    const Array1 pull =
-        ((target - model * step.fit.coefficients).array().square() / variance).sqrt();
+    const Vector own = shared.own_part(target - model * step.fit.coefficients);
+    step.together = count_together(own.array() / variance.sqrt());
+    const Array1 pull = (own.array().square() / variance).sqrt();
     step.trust = (kHuber / pull.max(kHuber));
     if (step.fit.weight <= floor) {
       step.finer = spline_.from_coefficients() *
@@ -286,7 +333,9 @@ class Reader {
     const Matrix pixels = step.gain * step.noise.matrix().asDiagonal() * step.gain.transpose();
     auto& modes = reading.uncertainty.modes;
     add_modes(step.together * pixels, sampling_, "reading", "pixel noise", modes);
-    add_modes(all - pixels, sampling_, "smoothness", "smoothness", modes);
+    const Matrix by_shared = step.gain * shared_;
+    add_modes(all - pixels - by_shared * by_shared.transpose(), sampling_, "smoothness",
+              "smoothness", modes);
     modes.push_back({"last step", "smoothness", (sampling_ * last_step).array()});
     if (step.finer.size() > 0) {
       modes.push_back({"finest ripple", "smoothness", (sampling_ * step.finer).array()});
@@ -326,6 +375,7 @@ class Reader {
   Matrix sampling_, inner_sampling_;
   Array1 interpolation_, offset_;
   std::vector<Index> used_;
+  Matrix shared_;  ///< (n_used, k) Pa, of the maps' places, which the fit finds as well
   std::vector<numerics::Penalty> penalties_;
   Array1 trust_;         ///< (n_used) of the last step
   double enough_ = 0.0;  ///< Pa: a step that moves p by less on average is the last

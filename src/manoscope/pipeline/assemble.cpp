@@ -98,7 +98,7 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
   for (Array1* scalar :
        {&m.flow_rate, &m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
         &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
-        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength}) {
+        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength, &m.pressure_band_factor}) {
     *scalar = Array1::Constant(n, kNan);
   }
   for (Array2* field : {&m.deflection, &m.deflection_uncertainty, &m.pressure,
@@ -126,6 +126,7 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
     m.pressure_local.row(r) = masked(found.local_pressure, answered);
     m.pressure_local_uncertainty.row(r) = masked(found.local_uncertainty, answered);
     m.half_response_wavelength[r] = found.half_wavelength;
+    if (found.band_factor > 0.0) m.pressure_band_factor[r] = found.band_factor;
     m.pressure_flags.row(r) = reading.flags;
     Matrix covariance = reading.uncertainty.covariance();
     for (Index i = 0; i < n_x; ++i) {

@@ -23,6 +23,7 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 struct RunFindings {
   inversion::PressureReading reading;
   Array1 local_pressure, local_uncertainty;  ///< (n_x) Pa, each station on its own; flags as above
+  double band_factor = 0.0;                  ///< of the simultaneous band; 0: no answer anywhere
   double half_wavelength = kMissing;         ///< m, of the non-local reading; NaN: there is none
   inversion::Stretch stretch;                ///< where the test section was looked for
   std::optional<inversion::TestSection> section;

@@ -13,6 +13,7 @@
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/flow/parasitic.hpp"
 #include "manoscope/inversion/end_doubt.hpp"
+#include "manoscope/inversion/simultaneous_band.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 #include "manoscope/pipeline/stages.hpp"
 
@@ -136,6 +137,7 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
     found.reading = std::move(nonlocal->pressure);
     found.half_wavelength = nonlocal->half_wavelength;
   }
+  found.band_factor = inversion::simultaneous_factor(found.reading, options.reading.coverage);
   found.intersections = inversion::find_intersections(curves.estimated_levels(), run.profile,
                                                       channel.width, options.intersections);
   if (found.section) {

@@ -50,6 +50,7 @@ struct Measurement {
   Array2 pressure_lower, pressure_upper;      ///< (n_r, n_x) Pa
   /// Each station on its own, before the wall's neighbourhood is taken into account.
   Array2 pressure_local, pressure_local_uncertainty;  ///< (n_r, n_x) Pa
+  Array1 pressure_band_factor;                        ///< (n_r) k of the simultaneous band
   Array1 half_response_wavelength;                    ///< (n_r) m; NaN: read station by station
   std::vector<Matrix> pressure_covariance;            ///< n_r of (n_x, n_x) Pa2
   Flags2 pressure_flags;                              ///< (n_r, n_x) bits of ReadingFlag

@@ -189,6 +189,12 @@ const std::vector<Variable>& variables() {
        "Pa",
        "standard uncertainty of that, k = 1",
        &M::pressure_local_uncertainty},
+      {"pressure_band_factor",
+       {"run"},
+       "1",
+       "k of the simultaneous band, pressure +- k pressure_uncertainty: it holds the whole of p(x) "
+       "with the coverage probability",
+       &M::pressure_band_factor},
       {"half_response_wavelength",
        {"run"},
        "m",
