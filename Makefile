@@ -14,12 +14,16 @@ CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
 FUZZ_FILES ?= 100000
 SECONDS_PER_READER ?= 30
+# Of `make coverage`: its table, walls of each of six samples, experiments with each wall.
+COVERAGE ?= $(BUILD)/coverage.csv
+WALLS ?= 14
+SEEDS ?= 5
 # Of `make tidy-changed`: how far back a source counts as changed.
 TIDY_COMMITS ?= 6
 # Much arithmetic and little memory work: minutes each under the sanitizers, which see the same code
 # on smaller grids in the other tests. `make asan-all` runs them, too.
 LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid|NistStrd|^PropagateByDraws
-LONG_TWINS = VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
+LONG_TWINS = OfWallsThatDoNotShip|VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
 LONG_READINGS = IsNeverFoundOnAPolishedFrame|^ReadNonlocal.HasBars|Practice.(Sensitivity|ResultFile)|Agree.*S1|^Origin.ThatIsWrong
 LONG_UNDER_ASAN = $(LONG_WALLS)|$(LONG_TWINS)|$(LONG_READINGS)
 
@@ -38,7 +42,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy check format format-check layers scripts tidy \
+.PHONY: all demo test bench docs accuracy coverage check format format-check layers scripts tidy \
         tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -67,6 +71,13 @@ docs: all ## check links and commands of the documentation
 accuracy: all ## make, measure and judge every scenario at full size, write the tables of docs/
 	@$(install) tests
 	/usr/bin/python3 tools/accuracy_table.py $(BUILD)/manoscope docs $(wildcard $(PRACTICE)/S*)
+
+coverage: ## do the error bars hold? hundreds of virtual experiments; goes on where it was stopped
+	@$(install) build libraries figures tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) --target coverage_campaign -j $(JOBS)
+	$(BUILD)/coverage_campaign -o $(COVERAGE) --walls $(WALLS) --seeds $(SEEDS)
+	@tools/coverage_table.py $(COVERAGE) --page docs/error-budget.md
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 

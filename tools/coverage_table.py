@@ -1,23 +1,26 @@
 #!/usr/bin/env python3
 """Sums up a campaign of virtual experiments: do the error bars hold, how far are readings off.
 
-usage: tools/coverage_table.py CAMPAIGN.csv [--by COLUMN] [--json]
+usage: tools/coverage_table.py CAMPAIGN.csv [--by COLUMN] [--json | --page PAGE]
 
 CAMPAIGN.csv is what coverage_campaign writes: one row a run and stretch of the channel. Prints a
 Markdown table for each stretch, a row for each value of COLUMN (base: the sample) and one for all:
 the share of stations within their 95 % and 68 % bars, mean and rms of the pulls, and median, 95th
 percentile and worst of the runs' rms errors, as a share of the goal max(floor, share of the drop).
 The stations of a run share their errors, as the runs of an experiment do: the figure behind a ± is
-the standard error over experiments.
+the standard error over experiments. With --page the tables replace what stands between the markers
+of that page.
 """
 
 import argparse
 import csv
 import json
 import math
+import pathlib
 import statistics
 import sys
 
+BEGIN, END = "<!-- begin generated -->", "<!-- end generated -->"
 STRETCHES = {"inside": "1.6 to 13.9 mm", "inlet": "0.3 to 1.6 mm", "outlet": "13.9 to 15.2 mm",
              "whole": "the whole channel", "drop": "dp_e over the test section"}
 # Pa, share of the drop: what the rms error of the median run should keep to.
@@ -122,12 +125,32 @@ def budget_table(rows, by):
     return "\n".join(lines)
 
 
+def pages(stretches, by):
+    text = []
+    for name, some in stretches.items():
+        if not some:
+            continue
+        text += [f"#### {STRETCHES[name][0].upper()}{STRETCHES[name][1:]}", table(some, by)]
+        if any(row.get("budget") for row in some):
+            text.append(budget_table(some, by))
+    return "\n\n".join(text)
+
+
+def put_between_markers(page, text):
+    whole = page.read_text()
+    if BEGIN not in whole or END not in whole:
+        sys.exit(f"{page}: lacks the lines {BEGIN} and {END}")
+    before, rest = whole.split(BEGIN, 1)
+    page.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END, 1)[1]}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("campaign")
     parser.add_argument("--by", default="base")
     parser.add_argument("--json", action="store_true")
+    parser.add_argument("--page", type=pathlib.Path)
     arguments = parser.parse_args()
     rows = read_rows(arguments.campaign)
     if arguments.by not in rows[0]:
@@ -137,12 +160,10 @@ def main():
     if arguments.json:
         print(json.dumps({name: summary(some) for name, some in stretches.items() if some}))
         return
-    for name, some in stretches.items():
-        if some:
-            print(f"\n#### {STRETCHES[name][0].upper()}{STRETCHES[name][1:]}\n\n"
-                  f"{table(some, arguments.by)}")
-            if any(row.get("budget") for row in some):
-                print(f"\n{budget_table(some, arguments.by)}")
+    text = pages(stretches, arguments.by)
+    print(text)
+    if arguments.page:
+        put_between_markers(arguments.page, text)
 
 
 if __name__ == "__main__":
