@@ -14,7 +14,6 @@ namespace {
 constexpr Index kLongest = 24;   // pixels along the flow
 constexpr Index kAround = 2;     // pixels beyond a patch that may belong to it
 constexpr Index kRowsApart = 6;  // rows between two runs whose ends may hide in missing pixels
-constexpr Index kSide = 5;       // pixels of the wall on either side
 constexpr Index kFewest = 4;     // pixels of a patch
 constexpr double kWhole = 0.15;  // distance from a whole number of half wavelengths
 constexpr double kNoises = 5.0;  // deviations of the noise that a pixel may be off
@@ -112,19 +111,22 @@ struct Beside {
   double at(Index ix) const { return height + slope * (static_cast<double>(ix) - x); }
 };
 
-/// None with fewer than three good pixels on either side.
+/// From the nearest five good pixels on either side, at most 15 away; none with fewer than three.
 std::optional<Beside> wall_beside(const ChannelMap& map, Index iz, Index first, Index last) {
+  constexpr std::size_t kFewestBeside = 3, kMostBeside = 5;
+  constexpr Index kReach = 15;
   std::array<double, 2> place{}, height{};
   for (const int side : {0, 1}) {
-    const Index from = side == 0 ? first - kSide : last + 1;
+    const Index from = side == 0 ? first : last, by = side == 0 ? -1 : 1;
     std::vector<double> heights;
     double sum = 0.0;
-    for (Index ix = std::max<Index>(0, from); ix < std::min(from + kSide, map.grid.nx); ++ix) {
+    for (Index step = 1; step <= kReach && heights.size() < kMostBeside; ++step) {
+      const Index ix = from + by * step;
+      if (ix < 0 || ix >= map.grid.nx) break;
       if (map.flags(iz, ix) != 0) continue;
       heights.push_back(map.height(iz, ix));
       sum += static_cast<double>(ix);
     }
-    constexpr std::size_t kFewestBeside = 3;
     if (heights.size() < kFewestBeside) return std::nullopt;
     place[static_cast<std::size_t>(side)] = sum / static_cast<double>(heights.size());
     height[static_cast<std::size_t>(side)] = numerics::median(heights);
@@ -145,6 +147,8 @@ Plan plan_island(const ChannelMap& map, const Island& island, double jump, doubl
   const Index bottom = std::min(map.grid.nz - 1, island.bottom + kAround);
   for (Index iz = std::max<Index>(0, island.top - kAround); iz <= bottom; ++iz) {
     const auto wall = wall_beside(map, iz, left, right);
+    const bool around = iz < island.top || iz > island.bottom;
+    if (!wall && around) continue;  // hidden, and none of the runs' rows
     for (Index ix = left; ix <= right; ++ix) {
       if (map.flags(iz, ix) != 0) continue;
       const Index here = iz * map.grid.nx + ix;

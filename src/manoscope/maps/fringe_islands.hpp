@@ -21,9 +21,9 @@ struct FringePatches {
 /// half wavelengths and ends, within 24 pixels, with the same jump back or in missing pixels; rows
 /// that touch, or lie up to six apart (where missing pixels hide its ends), make one patch. Each of
 /// its pixels, and those two pixels around, is then held against the straight line between the
-/// medians of five pixels on either side of the patch: those a whole number of half wavelengths off
-/// it are lifted, those near it stay, others are flagged. A patch whose surroundings do not follow
-/// that line (near a clamped end) is left alone.
+/// medians of the nearest five good pixels on either side of the patch: those a whole number of
+/// half wavelengths off it are lifted, those near it stay, others are flagged. A patch whose
+/// surroundings do not follow that line (near a clamped end) is left alone.
 ///
 /// So a patch is found that lies across the clamped side or on a steep flank, where the map's own
 /// bend across the flow hides a part of its border.
