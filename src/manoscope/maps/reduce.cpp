@@ -295,9 +295,25 @@ Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n
   return placements;
 }
 
+namespace {
+
+/// The error of place that all maps share, like the map's own but for its size.
+void add_common_place(ReducedMap& map, Length uncertainty) {
+  const Length own = map.condition.shift.uncertainty;
+  if (uncertainty == Length{} || !(own > Length{})) return;
+  for (const ErrorMode& mode : map.profile.uncertainty.modes) {
+    if (mode.variable != fmt::format("shift of {}", map.condition.name)) continue;
+    map.profile.uncertainty.modes.push_back(
+        {"place of the frame", "registration", (uncertainty / own) * mode.effect});
+    return;
+  }
+}
+
+}  // namespace
+
 std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
                                       std::vector<ReducedMap>& flow, Length length, Length width,
-                                      const ReduceOptions& options, bool from_the_wall) {
+                                      const ReduceOptions& options, Length largest_offset) {
   if (!options.registration || options.shift_uncertainty) return std::nullopt;
   const auto profiles = [](const std::vector<ReducedMap>& maps) {
     std::vector<const Profile*> found;
@@ -309,18 +325,22 @@ std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
   for (auto* maps : {&hydrostatic, &flow}) {
     for (ReducedMap& map : *maps) map.condition.texture_contradicts = !agree;
   }
-  Length common{};
-  if (from_the_wall && found.offset && !hydrostatic.empty() &&
+  MapShift common{};
+  if (found.offset && !hydrostatic.empty() &&
+      std::abs(found.offset->shift.si()) <= largest_offset.si() &&
       found.offset->uncertainty < hydrostatic.front().condition.shift.uncertainty) {
-    std::swap(common, found.offset->shift);
+    constexpr double kAsymmetry = 2e-4;  // of the width
+    common.uncertainty = std::max(found.offset->uncertainty, kAsymmetry * width);
+    std::swap(common.shift, found.offset->shift);
   }
   const auto move = [common](ReducedMap& map, const std::optional<MapShift>& shift) {
     const Length assumed = map.condition.shift.uncertainty;
     const bool is_found = shift && shift->uncertainty < assumed;
-    if (!is_found && common == Length{}) return;
+    add_common_place(map, common.uncertainty);
+    if (!is_found && common.shift == Length{}) return;
     // A map whose own shift is not known lies where the others do, as well as was supposed.
     MapShift whole = is_found ? *shift : MapShift{Length{}, assumed};
-    whole.shift += common;
+    whole.shift += common.shift;
     move_profile(map.profile, whole, map.condition.name, assumed);
     map.condition.shift = whole;
   };

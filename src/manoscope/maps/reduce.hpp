@@ -146,16 +146,17 @@ Placements find_placements(const std::vector<ReducedMap>& reduced, std::size_t n
 /// move_profile() says. A map whose shift is not found, or less well than it was supposed to be
 /// known, stays as it is. Does nothing if the options say so.
 ///
-/// @param from_the_wall  count x from the ends of the wall itself, not of the frame: for a frame
-/// that
-///                       was found from two of the maps, to half a pixel and with their shifts in
-///                       it. Every map is moved by the offset, too, if that is known as well as one
-///                       map's position.
+/// @param largest_offset  count x from the ends of the wall itself, not of the frame, if both lie
+/// no
+///                        farther apart than this and that is known as well as one map's position:
+///                        every map is moved by it, and gets the error mode "place of the frame"
+///                        that all share (0.02 % of the width at least: walls are not quite
+///                        symmetric).
 /// @return where the middle of the wall lies against that of the frame, if the maps tell: 0 where
 ///         it was taken back.
 std::optional<MapShift> register_maps(std::vector<ReducedMap>& hydrostatic,
                                       std::vector<ReducedMap>& flow, Length length, Length width,
-                                      const ReduceOptions& options, bool from_the_wall = false);
+                                      const ReduceOptions& options, Length largest_offset = {});
 
 /// The map minus the instrument's own flat reference (a map of a flat mirror on the same pixels).
 ///

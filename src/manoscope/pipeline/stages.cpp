@@ -172,11 +172,12 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   result.hydrostatic.assign(std::make_move_iterator(reduced.begin()),
                             std::make_move_iterator(split));
   result.flow.assign(std::make_move_iterator(split), std::make_move_iterator(reduced.end()));
-  // A place that was found to half a pixel is made finer by the ends of all walls; one that was
-  // given is the user's, and doubted if they contradict it.
-  const bool place_was_found = !experiment.channel.origin;
+  // A place that was found, or given to half a pixel, is made finer by the ends of all walls; one
+  // that they contradict by more is the user's, and doubted.
+  const Length pitch = frame.along_columns() ? result.grid.pitch_x : result.grid.pitch_y;
+  const Length largest = experiment.channel.origin ? 0.5 * pitch : frame.length;
   result.offset = maps::register_maps(result.hydrostatic, result.flow, frame.length, frame.width,
-                                      options, place_was_found);
+                                      options, largest);
   return result;
 }
 
