@@ -54,7 +54,7 @@ TEST(Labels, WithoutAnyUncertaintyAreOneWarningThatNamesTheMend) {
   const Measurement mended = test.measure();
   EXPECT_TRUE(mended.warnings.empty()) << all_warnings(mended);
   EXPECT_NEAR(mended.pressure_uncertainty(0, middle) / stated.pressure_uncertainty(0, middle), 1.0,
-              1e-2);  // the label at 0 Pa has noise now, too, which hardly reaches the middle
+              2e-2);  // the label at 0 Pa has noise now, too: one of 17, 3 % of their part at most
 }
 
 TEST(Labels, AtZeroPressureHaveTheGaugesErrorsUnlessVented) {

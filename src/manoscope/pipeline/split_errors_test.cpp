@@ -89,7 +89,8 @@ TEST(SplitErrors, OfLabelsAloneHaveHardlyAnyMaps) {
   // All labels together leave less than half.
   const SplitJudgement joint = split_errors(test.measure(), test.twin.truth);
   EXPECT_LT(largest(joint, &Summary::labels), 0.5 * largest(split, &Summary::labels));
-  EXPECT_LT(largest(split, &Summary::maps), 0.005);  // as without any error
+  // As without any error, and the place of the frame: found to 20 nm, of 1 Pa/um.
+  EXPECT_LT(largest(split, &Summary::maps), 0.03);
   EXPECT_LT(largest(split, &Summary::locality), kLoadCells);
 }
 

@@ -257,7 +257,8 @@ TEST(ReduceMaps, TakeShiftsFromTheTextureOfTheFrameWhereTheWallShowsNone) {
   const auto bare = reduced_with(false), textured = reduced_with(true);
   const double pitch = bare.grid.pitch_x.si();
   EXPECT_FALSE(bare.hydrostatic[kLevel].condition.texture);
-  EXPECT_EQ(bare.hydrostatic[kLevel].condition.shift.shift, Length{});
+  // None of its own: what all maps have in common alone, of a wall not quite symmetric.
+  EXPECT_LT(std::abs(bare.hydrostatic[kLevel].condition.shift.shift.si()), 0.1e-6);
   const maps::MapCondition& found = textured.hydrostatic[kLevel].condition;
   ASSERT_TRUE(found.texture);
   EXPECT_FALSE(found.texture_contradicts);
