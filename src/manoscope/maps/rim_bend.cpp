@@ -164,9 +164,10 @@ struct Equations {
 /// 1.4826 times the median size; what was filled up lies beyond all others.
 double spread_of(std::vector<double>& sizes, std::size_t count, double expected) {
   constexpr double kNormalConsistency = 1.482602218505602;  // 1 / quantile(3/4)
-  const double middle = expected / kNormalConsistency;
-  return kNormalConsistency *
-         numerics::mean_of_ranks(sizes, (count - 1) / 2, count / 2, {0.9 * middle, 1.1 * middle});
+  const double guess = expected / kNormalConsistency;
+  const numerics::Range middle =
+      numerics::values_of_ranks(sizes, (count - 1) / 2, count / 2, {0.9 * guess, 1.1 * guess});
+  return kNormalConsistency * 0.5 * (middle.low + middle.high);
 }
 
 }  // namespace

@@ -224,8 +224,8 @@ Range bracket_of_median(std::vector<double>& sizes) {
   if (const auto range = range_of_ranks(sizes, lower, upper, {0.0, 3.0 * rough_median(sizes)})) {
     return *range;
   }
-  const double high = mean_of_ranks(sizes, upper, upper, {});
-  return {mean_of_ranks(sizes, lower, lower, {}), high};
+  const double high = values_of_ranks(sizes, upper, upper, {}).high;
+  return {values_of_ranks(sizes, lower, lower, {}).low, high};
 }
 
 /// Least absolute deviations of a few points, to within about their own uncertainty: `c`, and a
@@ -258,8 +258,8 @@ std::optional<Range> start_from_few(const GridPoints& points, Instructions instr
   return bracket_of_median(sizes);
 }
 
-/// Median of the sizes of all residuals; `space` has room for all.
-double median_size(const GridPoints& points, Instructions instructions, const Eigen::Vector3d& c,
+/// The two middle ones of the sizes of all residuals; `space` has room for all.
+Range middle_sizes(const GridPoints& points, Instructions instructions, const Eigen::Vector3d& c,
                    const Range& guess, std::vector<double>& space) {
   const auto n = static_cast<Index>(points.size());
   const Index lower = (n - 1) / 2, upper = n / 2;
@@ -268,9 +268,9 @@ double median_size(const GridPoints& points, Instructions instructions, const Ei
     run_in_lanes<SizesWithin>(instructions, samples_of(points), c.data(), bracket.low, bracket.high,
                               space.data(), &n_found, &n_below);
     if (lower < n_below || upper >= n_below + n_found) continue;
-    return mean_of_ranks({space.data(), static_cast<std::size_t>(n_found)},
-                         static_cast<std::size_t>(lower - n_below),
-                         static_cast<std::size_t>(upper - n_below), bracket);
+    return values_of_ranks({space.data(), static_cast<std::size_t>(n_found)},
+                           static_cast<std::size_t>(lower - n_below),
+                           static_cast<std::size_t>(upper - n_below), bracket);
   }
   throw InternalError("a residual is beyond 1e199");
 }
@@ -338,8 +338,8 @@ std::optional<PlaneFit> fit_plane(const GridPoints& points, Instructions instruc
   std::vector<double> space(points.values().size() + kLanes);
   Range bracket = *start;
   for (int step = 0; step < kSteps; ++step) {
-    const double median = median_size(points, instructions, fit.coefficient, bracket, space);
-    fit.sigma = kNormalConsistency * median;
+    const Range middle = middle_sizes(points, instructions, fit.coefficient, bracket, space);
+    fit.sigma = kNormalConsistency * 0.5 * (middle.low + middle.high);
     // An exact fit has sigma = 0: then only exact points keep their weight.
     const double bound = kTukey * std::max(fit.sigma, 1e-300);
     LaneSums sums;
@@ -359,8 +359,8 @@ std::optional<PlaneFit> fit_plane(const GridPoints& points, Instructions instruc
     fit.covariance = fit.sigma * fit.sigma * normal.matrix.inverse();
     if (by.cwiseAbs().maxCoeff() <= 1e-6 * fit.sigma / std::sqrt(n)) break;
     // No residual moves by more than the plane does; a and b are of order 1.
-    const double reach = 1.5 * by.cwiseAbs().sum() + 1e-9 * median;
-    bracket = {median - reach, median + reach};
+    const double reach = 1.5 * by.cwiseAbs().sum() + 1e-9 * middle.high;
+    bracket = {middle.low - reach, middle.high + reach};
   }
   return fit;
 }
@@ -371,8 +371,8 @@ double mad_sigma(const GridPoints& points, Instructions instructions) {
   for (double& size : sizes) size = std::abs(size);
   const Range bracket = sizes.empty() ? Range{0.0, 0.0} : bracket_of_median(sizes);
   std::vector<double> space(points.values().size() + kLanes);
-  return kNormalConsistency *
-         median_size(points, instructions, Eigen::Vector3d::Zero(), bracket, space);
+  const Range middle = middle_sizes(points, instructions, Eigen::Vector3d::Zero(), bracket, space);
+  return kNormalConsistency * 0.5 * (middle.low + middle.high);
 }
 
 }  // namespace manoscope::numerics

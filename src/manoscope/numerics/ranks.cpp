@@ -67,7 +67,8 @@ bool can_part(Range range) { return range.high - range.low > 1e-290; }
 
 }  // namespace
 
-double mean_of_ranks(std::span<double> values, std::size_t lower, std::size_t upper, Range within) {
+Range values_of_ranks(std::span<double> values, std::size_t lower, std::size_t upper,
+                      Range within) {
   MANO_ASSERT(lower <= upper && upper < values.size());
   constexpr std::size_t kFew = 512;  // not worth counting
   std::size_t n_below = 0, n_within = 0;
@@ -95,7 +96,7 @@ double mean_of_ranks(std::span<double> values, std::size_t lower, std::size_t up
   }
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(upper);
   std::nth_element(values.begin(), at, values.end());
-  return lower == upper ? *at : 0.5 * (*at + *std::max_element(values.begin(), at));
+  return {lower == upper ? *at : *std::max_element(values.begin(), at), *at};
 }
 
 std::optional<Range> range_of_ranks(std::span<const double> values, std::size_t lower,

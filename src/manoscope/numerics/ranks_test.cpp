@@ -21,7 +21,7 @@ std::vector<double> sizes(std::size_t n, const std::string& name) {
   return values;
 }
 
-TEST(MeanOfRanks, IsThatOfTheSortedValues) {
+TEST(ValuesOfRanks, AreThoseOfTheSortedValues) {
   for (const std::size_t n : {1U, 2U, 513U, 1000U, 4001U}) {
     const std::vector<double> values = sizes(n, "sorted");
     std::vector<double> sorted = values;
@@ -30,23 +30,28 @@ TEST(MeanOfRanks, IsThatOfTheSortedValues) {
                                Range{0.5, 0.6}, Range{-2.0, -1.0}}) {
       for (const std::size_t rank : {std::size_t{0}, n / 3, n / 2, n - 1}) {
         std::vector<double> space = values;
-        EXPECT_EQ(mean_of_ranks(space, rank, rank, within), sorted[rank]);
+        const Range one = values_of_ranks(space, rank, rank, within);
+        EXPECT_EQ(one.low, sorted[rank]);
+        EXPECT_EQ(one.high, sorted[rank]);
         if (rank == 0) continue;
         space = values;
-        EXPECT_EQ(mean_of_ranks(space, rank - 1, rank, within),
-                  0.5 * (sorted[rank - 1] + sorted[rank]));
+        const Range two = values_of_ranks(space, rank - 1, rank, within);
+        EXPECT_EQ(two.low, sorted[rank - 1]);
+        EXPECT_EQ(two.high, sorted[rank]);
       }
     }
   }
 }
 
-TEST(MeanOfRanks, TakesEqualValuesAndARangeOfAnyWidth) {
+TEST(ValuesOfRanks, TakeEqualValuesAndARangeOfAnyWidth) {
   std::vector<double> equal(1000, 2.0);
-  EXPECT_EQ(mean_of_ranks(equal, 499, 500, {2.0, 2.0}), 2.0);
-  EXPECT_EQ(mean_of_ranks(equal, 499, 500, {0.0, 1e200}), 2.0);
+  EXPECT_EQ(values_of_ranks(equal, 499, 500, {2.0, 2.0}).low, 2.0);
+  EXPECT_EQ(values_of_ranks(equal, 499, 500, {0.0, 1e200}).high, 2.0);
   std::vector<double> two(1000, 0.0);
   std::fill(two.begin() + 500, two.end(), 1e-300);
-  EXPECT_EQ(mean_of_ranks(two, 499, 500, {0.0, 1e-300}), 0.5e-300);
+  const Range middle = values_of_ranks(two, 499, 500, {0.0, 1e-300});
+  EXPECT_EQ(middle.low, 0.0);
+  EXPECT_EQ(middle.high, 1e-300);
 }
 
 TEST(RangeOfRanks, HoldsThemAndLittleMore) {
