@@ -8,10 +8,14 @@
 // Each line is answered by one JSON line: wall and processor seconds, peak resident memory.
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <sstream>
 
-#include "manoscope/pipeline/quick_profiles.hpp"
+#include "manoscope/core/parallel.hpp"
+#include "manoscope/io/float_rows.hpp"
+#include "manoscope/maps/linear_reduction.hpp"
 #include "worker.hpp"
 
 namespace manoscope::bench {
@@ -27,6 +31,33 @@ nlohmann::json as_json(const maps::LinearReduction& reduced) {
           {"uncertainty_m", list(profile.uncertainty.standard())},
           {"flags", std::vector<int>(profile.flags.begin(), profile.flags.end())},
           {"noise_m", reduced.plane.sigma.si()}};
+}
+
+/// One pass over each map, read piece by piece; a share of the maps to a thread, which reuses what
+/// it holds from map to map.
+/// @param raw  layout of the files; null: .gsf
+std::vector<maps::LinearReduction> reduce_all(const std::vector<std::string>& files,
+                                              const ChannelFrame& frame, const io::RawFloats* raw,
+                                              int n_threads) {
+  std::vector<maps::LinearReduction> results(files.size());
+  const CameraGrid grid = raw != nullptr ? raw->grid : io::FloatRows(files.front()).grid();
+  const maps::LinearReducer reducer(grid, frame, files.front());
+  const auto n_files = static_cast<Index>(files.size());
+  // Several shares a thread: one that is held up leaves its last to the other.
+  const Index n_shares = n_threads == 1 ? 1 : std::min<Index>(4 * n_threads, n_files);
+  parallel_for(n_shares, n_threads, [&](Index share) {
+    maps::LinearPass pass(reducer);
+    io::PieceBuffer buffer;
+    for (Index i = share * n_files / n_shares; i < (share + 1) * n_files / n_shares; ++i) {
+      const std::string& file = files[static_cast<std::size_t>(i)];
+      const auto map = raw != nullptr ? std::make_unique<io::FloatRows>(file, *raw, &buffer)
+                                      : std::make_unique<io::FloatRows>(file, &buffer);
+      if (!(map->grid() == grid)) throw std::runtime_error(file + " is of another camera");
+      for (auto rows = map->next(); !rows.empty(); rows = map->next()) pass.add_rows(rows);
+      results[static_cast<std::size_t>(i)] = pass.finish(map->metres_per_unit(), file);
+    }
+  });
+  return results;
 }
 
 void obey_all(const std::string& inputs_file) {
@@ -52,9 +83,8 @@ void obey_all(const std::string& inputs_file) {
     if (order == "read") {
       read_all(files, kBuffer);
     } else if (order == "reduce") {
-      pipeline::QuickProfilesOptions options;
-      if (what == "raw") options.raw = io::RawFloats{grid, 1.0};
-      last = pipeline::quick_profiles({files.begin(), files.end()}, frame, options, n_threads);
+      const io::RawFloats raw{grid, 1.0};
+      last = reduce_all(files, frame, what == "raw" ? &raw : nullptr, n_threads);
     } else {
       throw std::runtime_error("unknown order: " + line);
     }

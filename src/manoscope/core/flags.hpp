@@ -34,6 +34,18 @@ struct ReadingFlag {
   static constexpr FlagBits no_answer = no_data | out_of_calibration | ambiguous | insensitive;
 };
 
+/// How many have one of the bits.
+inline Index count_set(const Flags2& flags, FlagBits bits) {
+  Index count = 0;
+  for (Index row = 0; row < flags.rows(); ++row) {
+    const FlagBits* const at = flags.data() + row * flags.cols();
+    unsigned in_row = 0;  // narrower than Index: more of them side by side
+    for (Index column = 0; column < flags.cols(); ++column) in_row += (at[column] & bits) != 0;
+    count += in_row;
+  }
+  return count;
+}
+
 struct FlagName {
   FlagBits bit;
   std::string_view name;

@@ -1,6 +1,7 @@
 #include "manoscope/core/height_map.hpp"
 
-#include <cmath>
+#include <bit>
+#include <cstdint>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
@@ -14,12 +15,14 @@ HeightMap::HeightMap(CameraGrid grid, Array2 height, Flags2 flags)
     : grid_(grid), height_(std::move(height)), flags_(std::move(flags)) {
   MANO_ASSERT(height_.rows() == grid_.ny && height_.cols() == grid_.nx);
   MANO_ASSERT(flags_.rows() == grid_.ny && flags_.cols() == grid_.nx);
+  constexpr std::uint64_t kExponent = 0x7ff0000000000000;  // all ones: infinite or no number
+  double* const height_at = height_.data();
+  FlagBits* const flags_at = flags_.data();
   for (Index i = 0; i < height_.size(); ++i) {
-    double& value = height_.data()[i];
-    if (!std::isfinite(value)) {
-      value = 0.0;
-      flags_.data()[i] |= PixelFlag::no_data;
-    }
+    const auto bits = std::bit_cast<std::uint64_t>(height_at[i]);
+    const bool good = (bits & kExponent) != kExponent;
+    height_at[i] = std::bit_cast<double>(good ? bits : 0);
+    flags_at[i] |= good ? FlagBits{0} : PixelFlag::no_data;
   }
 }
 

@@ -53,6 +53,18 @@ TEST(BrukerOpdx, ReadsAProfileAndTheSettings) {
   EXPECT_EQ(profile.settings, expected);
 }
 
+TEST(BrukerOpdx, ASettingThatIsNoNumberIsLeftOut) {
+  const TestFolder folder;
+  for (const double force : {std::nan(""), HUGE_VAL}) {
+    BrukerOpdx file;
+    file.stylus_force = force;
+    const auto channels = read_channels(folder.write("a.opdx", file.bytes()));
+    const std::vector<std::pair<std::string, std::string>> expected{{"Date", "2/11/2021"},
+                                                                    {"Samples", "3001"}};
+    EXPECT_EQ(channels.back().settings, expected);
+  }
+}
+
 TEST(BrukerOpdx, FaultyFilesAreNamed) {
   const TestFolder folder;
   const auto fault = [&](auto&& spoil) {

@@ -9,7 +9,6 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/provenance.hpp"
@@ -84,14 +83,6 @@ FloatRows::FloatRows(const std::filesystem::path& path, const RawFloats& layout,
 
 FloatRows::Descriptor::~Descriptor() {
   if (number >= 0) ::close(number);
-}
-
-bool FloatRows::can_read(const std::filesystem::path& path) {
-  if (std::endian::native != std::endian::little) return false;
-  std::string magic(kGsfMagic.size(), '\0');
-  std::ifstream stream(path, std::ios::binary);
-  return stream.read(magic.data(), static_cast<std::streamsize>(magic.size())) &&
-         magic == kGsfMagic;
 }
 
 void FloatRows::open() {

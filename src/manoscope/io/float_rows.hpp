@@ -49,9 +49,6 @@ class FloatRows {
   FloatRows(const std::filesystem::path& path, const RawFloats& layout,
             PieceBuffer* lent = nullptr);
 
-  /// Whether the first constructor reads the file: a .gsf, on a machine of its byte order.
-  static bool can_read(const std::filesystem::path& path);
-
   const CameraGrid& grid() const { return layout_.grid; }
   double metres_per_unit() const { return layout_.metres_per_unit; }
   /// The next whole rows; empty after the last.

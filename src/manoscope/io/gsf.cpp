@@ -6,6 +6,7 @@
 // top.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -13,7 +14,6 @@
 
 #include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
-#include "manoscope/core/provenance.hpp"
 #include "manoscope/io/byte_cursor.hpp"
 #include "manoscope/io/file_text.hpp"
 #include "manoscope/io/file_units.hpp"
@@ -80,6 +80,16 @@ class Header {
   std::map<std::string, std::string_view> fields_;
 };
 
+/// The first bytes of a file, its header among them: the whole of it if the header is that long.
+std::string_view head_of(ByteCursor& cursor) {
+  constexpr std::uint64_t kMost = 4096, kMostPadding = 4;
+  const std::string_view head = cursor.bytes(std::min(kMost, cursor.size()));
+  const auto end = head.find('\0');
+  if (end != std::string_view::npos && end + kMostPadding <= head.size()) return head;
+  cursor.seek(0);
+  return cursor.bytes(cursor.size());
+}
+
 class GsfReader final : public Reader {
  public:
   std::string_view name() const override { return "gsf"; }
@@ -90,15 +100,14 @@ class GsfReader final : public Reader {
   }
 
   std::vector<Channel> read(const std::filesystem::path& path, const ReadOptions&) const override {
-    const std::string bytes = read_file(path);
-    GsfLayout layout = read_gsf_header(bytes, bytes.size(), path.string());
+    ByteCursor cursor(path);
+    GsfLayout layout = read_gsf_header(head_of(cursor), cursor.size(), path.string());
     Channel channel;
     channel.name = std::move(layout.title);
     channel.grid = layout.grid;
     channel.file_unit = std::move(layout.file_unit);
     channel.unit = layout.unit.name;
     channel.values.resize(channel.grid.ny, channel.grid.nx);
-    ByteCursor cursor(bytes, path.string());
     cursor.seek(layout.data);
     cursor.f32_array(Endian::little,
                      {channel.values.data(), static_cast<std::size_t>(channel.values.size())});

@@ -60,6 +60,19 @@ TEST(Gsf, ReadsEveryLengthOfPadding) {
   }
 }
 
+TEST(Gsf, ReadsAHeaderOfAnyLength) {
+  const TestFolder folder;
+  // About 4096 bytes, where the first look at the file ends, and far beyond.
+  for (std::size_t length = 4030; length < 4130; ++length) {
+    const std::string title(length == 4129 ? 200000 : length, 't');
+    const auto path =
+        folder.write("a.gsf", gsf("XRes = 3\nYRes = 2\nTitle = " + title + "\n", six_heights()));
+    const auto channels = read_channels(path);
+    EXPECT_EQ(channels.front().name, title);
+    EXPECT_EQ(channels.front().values(1, 2), 6.0);
+  }
+}
+
 TEST(Gsf, WithoutSizeOrUnitTheScaleIsUnknown) {
   const TestFolder folder;
   const auto path = folder.write("a.gsf", gsf("XRes = 3\nYRes = 2\n", six_heights()));

@@ -160,7 +160,7 @@ inline std::string vca_quantity(const std::string& name, double value, const std
 struct BrukerOpdx {
   bool anonymous_matrix = false, f64_samples = false;
   std::string unit = "\xc2\xb5m";
-  double data_scale = 0.5;
+  double data_scale = 0.5, stylus_force = 3.0;
   std::uint64_t nx = 3;
   std::vector<float> samples{1.0F, 2.0F, 3.0F, 4.0F, std::nanf(""), 6.0F};
 
@@ -187,7 +187,7 @@ struct BrukerOpdx {
     const std::string meta =
         vca_item("Date", 0x12, vca_counted("2/11/2021")) +
         vca_item("Settings", 0x7d,
-                 vca_counted(vca_quantity("StylusForce", 3.0, "mg") +
+                 vca_counted(vca_quantity("StylusForce", stylus_force, "mg") +
                              vca_item("Samples", 0x0b, little(3001, 8)) + end)) +
         end;
     return std::string("VCA DATA\x01\0\0\x55", 12) +

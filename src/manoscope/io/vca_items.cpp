@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace manoscope::io {
 namespace {
 
@@ -143,8 +145,11 @@ std::string vca_text(ByteCursor& cursor, const VcaItem& item) {
     cursor.seek(item.offset);
     return std::string(cursor.bytes(item.size));
   }
-  if (const auto number = vca_number(cursor, item)) return fmt::format("{:.10g}", *number);
+  if (const auto number = vca_number(cursor, item)) {
+    return std::isfinite(*number) ? fmt::format("{:.10g}", *number) : std::string();
+  }
   if (const auto quantity = vca_quantity(cursor, item)) {
+    if (!std::isfinite(quantity->value)) return {};
     return fmt::format("{:.10g}{}{}", quantity->value, quantity->unit.empty() ? "" : " ",
                        quantity->unit);
   }

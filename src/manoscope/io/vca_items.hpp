@@ -85,7 +85,7 @@ std::optional<double> vca_number(ByteCursor& cursor, const VcaItem& item);
 /// The value of a quantity; nothing for others.
 std::optional<VcaQuantity> vca_quantity(ByteCursor& cursor, const VcaItem& item);
 
-/// The value of a text, a number or a quantity in words; "" for others.
+/// The value of a text, a number or a quantity in words; "" for others, and for what is not finite.
 std::string vca_text(ByteCursor& cursor, const VcaItem& item);
 
 }  // namespace manoscope::io

@@ -96,17 +96,24 @@ Flags2 rim_mask(const ChannelGrid& grid, Length channel_length, Length channel_w
   const double left = -margin.si(), right = channel_length.si() + margin.si();
   const double half = 0.5 * channel_width.si() + margin.si();
   Flags2 mask = Flags2::Ones(grid.nz, grid.nx);
-  for (Index ix = 0; ix < grid.nx; ++ix) {
-    const double x = grid.x(ix);
-    if (!(x > left && x < right)) continue;
-    const double middle = centre.z(x, channel_length.si());
-    const auto row = [&](double z) { return (z - grid.z(0)) / grid.pitch_z.si(); };
-    // Rows strictly between the two sides.
-    const auto first = std::max<Index>(0, static_cast<Index>(std::floor(row(middle - half))));
-    const auto last =
-        std::min<Index>(grid.nz - 1, static_cast<Index>(std::ceil(row(middle + half))));
-    for (Index iz = first; iz <= last; ++iz) {
-      if (std::abs(grid.z(iz) - middle) < half) mask(iz, ix) = 0;
+  Index first = 0, end = grid.nx;  // columns that the channel crosses
+  while (first < end && !(grid.x(first) > left)) ++first;
+  while (end > first && !(grid.x(end - 1) < right)) --end;
+  if (first == end) return mask;
+  Array1 middle(grid.nx);
+  for (Index ix = first; ix < end; ++ix) middle[ix] = centre.z(grid.x(ix), channel_length.si());
+  const auto columns = middle.segment(first, end - first);
+  const double lowest = columns.minCoeff(), highest = columns.maxCoeff();
+  for (Index iz = 0; iz < grid.nz; ++iz) {
+    const double z = grid.z(iz);
+    if (z - highest >= half || lowest - z >= half) continue;
+    FlagBits* const row = &mask(iz, 0);
+    if (std::abs(z - lowest) < half && std::abs(z - highest) < half) {
+      std::fill(row + first, row + end, FlagBits{0});
+      continue;
+    }
+    for (Index ix = first; ix < end; ++ix) {
+      if (std::abs(z - middle[ix]) < half) row[ix] = 0;
     }
   }
   return mask;

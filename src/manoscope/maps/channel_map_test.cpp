@@ -196,5 +196,20 @@ TEST(RimMask, HoldsEverySampleFartherThanTheMarginFromTheRectangle) {
   EXPECT_EQ(count, 60 * 20 - 46 * 16);
 }
 
+TEST(RimMask, FollowsACentreLineOffTheAxisAndAskew) {
+  const ChannelGrid grid{60, 20, 100.0 * um, 100.0 * um, -1.05 * mm, -0.95 * mm};
+  for (const CentreLine& centre :
+       {CentreLine{0.12 * mm, 0.0}, CentreLine{-0.04 * mm, 0.07}, CentreLine{0.3 * mm, -0.21}}) {
+    const Flags2 rim = rim_mask(grid, 4.0 * mm, 1.0 * mm, 0.3 * mm, centre);
+    for (Index iz = 0; iz < grid.nz; ++iz) {
+      for (Index ix = 0; ix < grid.nx; ++ix) {
+        const double beyond_x = std::max(-grid.x(ix), grid.x(ix) - 4e-3);
+        const double beyond_z = std::abs(grid.z(iz) - centre.z(grid.x(ix), 4e-3)) - 0.5e-3;
+        EXPECT_EQ(rim(iz, ix), std::max(beyond_x, beyond_z) > 0.3e-3 ? 1 : 0) << iz << ' ' << ix;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace manoscope::maps

@@ -14,7 +14,9 @@ namespace manoscope::maps {
 /// times the upper decile of the steps of the 7 x 7 pixels around it, so that a curved wall on a
 /// coarse camera stays unflagged. Without noise (well below 20 nm) a pixel at a clamped corner may
 /// still be flagged. Two spikes side by side show half their size; patches wider than
-/// two pixels are not found, nor pixels with fewer than two good neighbours along either axis.
+/// two pixels are not found, nor pixels with fewer than two good neighbours along either axis, nor
+/// one of two spikes two pixels apart along an axis, if the other is twice as high: where
+/// mend_fringe_patches() follows it flags these.
 /// @param noise      standard deviation of one pixel, > 0.
 /// @param threshold  about 6: one false alarm in 10^9 normal pixels or fewer.
 /// @return number of pixels newly flagged.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "manoscope/maps/row_window.hpp"
+
 namespace manoscope::maps {
 namespace {
 
@@ -43,21 +45,50 @@ class Line {
   }
 
   /// How far the step from here to the next pixel lies outside the steps before and behind it; 0
-  /// where it is no more than twice what the steps change by anyway, beyond `noise`.
-  double jump(double noise) const {
-    const auto before = side(-1, -1), behind = side(1, 1);
+  /// where that is `least` or less, or no more than twice what the steps change by anyway, beyond
+  /// `noise`.
+  double jump(double least, double noise) const {
+    const auto before = side(-1, -1);
+    if (before && std::abs(step(0) - before->slope) <= least) return 0.0;
+    const auto behind = side(1, 1);
     if (!before && !behind) return 0.0;
     const Side a = before ? *before : *behind, b = behind ? *behind : *before;
     const auto [low, high] = std::minmax(a.slope, b.slope);
     const double jump = step(0) - std::clamp(step(0), low, high);
     const double bending = std::min(a.bending, b.bending) - noise;
-    return std::abs(jump) > 2.0 * bending ? jump : 0.0;
+    return std::abs(jump) > std::max(least, 2.0 * bending) ? jump : 0.0;
   }
 
  private:
   const double* height_;
   const FlagBits* flags_;
   Index stride_, before_, behind_;
+};
+
+/// Steps of a row to the next pixel along x and z that may be jumps: those that lie farther than
+/// `least` from both the step before and the step behind, and those with a bad pixel nearby, of
+/// which this says nothing. The others, nearly all, hold 0.
+struct DoubtfulSteps {
+  template <class Lanes>
+  [[gnu::always_inline]] static void run(const RowWindow* window, Index nx, double least,
+                                         double* along_x, double* along_z) {
+    const double *above = window->row(-1), *here = window->row(0), *below = window->row(1);
+    const double* far_below = window->row(2);
+    const Lanes bound = Lanes::all(least), known = Lanes::all(0.1 * RowWindow::kAbsent);
+    const auto doubtful = [&](const double* before, const double* from, const double* to,
+                              const double* behind) __attribute__((always_inline)) {
+      const Lanes h = Lanes::load(from), next = Lanes::load(to), step = next - h;
+      const Lanes a = size_of(step - (h - Lanes::load(before)));
+      const Lanes b = size_of(step - (Lanes::load(behind) - next));
+      return is_below(greater(h, next), known) *
+             (is_below(bound, lesser(a, b)) + is_below(known, greater(a, b)));
+    };
+    for (Index ix = 0; ix < nx; ix += numerics::kLanes) {
+      const double* const at = here + ix;
+      doubtful(at - 1, at, at + 1, at + 2).store(along_x + ix);
+      doubtful(above + ix, at, below + ix, far_below + ix).store(along_z + ix);
+    }
+  }
 };
 
 }  // namespace
@@ -68,32 +99,24 @@ std::vector<FringeJump> find_fringe_jumps(const ChannelMap& map, double least, d
   constexpr double kNoises = 6.0;  // of the change from step to step, 2.4 deviations of a pixel's
   std::vector<FringeJump> jumps;
   const auto look = [&](Index iz, Index ix, bool along_x) {
-    const double size = Line(map, iz, ix, along_x).jump(kNoises * noise);
-    if (std::abs(size) <= least) return;
+    const double size = Line(map, iz, ix, along_x).jump(least, kNoises * noise);
+    if (size == 0.0) return;
     const Index here = iz * nx + ix;
     jumps.push_back({here, here + (along_x ? 1 : nx), size});
     cuts(iz, ix) |= along_x ? FlagBits{1} : FlagBits{2};
   };
-  // Most steps lie near one of their neighbours': no need to look closer. Where a pixel nearby is
-  // bad the plain test says nothing.
-  const auto plain = [&](const double* height, const FlagBits* flags, Index stride) {
-    if ((flags[-stride] | flags[2 * stride]) != 0) return false;
-    const double step = height[stride] - height[0];
-    const double before = height[0] - height[-stride];
-    const double behind = height[2 * stride] - height[stride];
-    return std::abs(step - before) <= least || std::abs(step - behind) <= least;
-  };
+  RowWindow window(map);
+  const auto n_filled = static_cast<std::size_t>(nx + numerics::kLanes);
+  std::vector<double> along_x(n_filled), along_z(n_filled);
   for (Index iz = 0; iz < nz; ++iz) {
+    window.move_to(iz);
+    numerics::run_in_lanes<DoubtfulSteps>(numerics::best_instructions(), &window, nx, least,
+                                          along_x.data(), along_z.data());
     for (Index ix = 0; ix < nx; ++ix) {
-      if (map.flags(iz, ix) != 0) continue;
-      const double* height = &map.height(iz, ix);
-      const FlagBits* flags = &map.flags(iz, ix);
-      if (ix + 1 < nx && flags[1] == 0 && !(ix > 0 && ix + 2 < nx && plain(height, flags, 1))) {
-        look(iz, ix, true);
-      }
-      if (iz + 1 < nz && flags[nx] == 0 && !(iz > 0 && iz + 2 < nz && plain(height, flags, nx))) {
-        look(iz, ix, false);
-      }
+      const auto at = static_cast<std::size_t>(ix);
+      if (along_x[at] + along_z[at] == 0.0) continue;
+      if (along_x[at] != 0.0) look(iz, ix, true);
+      if (along_z[at] != 0.0) look(iz, ix, false);
     }
   }
   return jumps;

@@ -18,8 +18,8 @@ namespace manoscope::maps {
 /// into patches. From the largest patch outwards each is lifted by the whole number of half
 /// wavelengths nearest to the mean of the jumps along its border; without a wavelength by that mean
 /// itself. A patch whose jumps do not agree within the noise, or with no whole number, is flagged.
-/// So is one below four pixels: it may be noise. Where the wavelength is known, patches that show
-/// along the flow are mended first (mend_fringe_islands()).
+/// So is one below four pixels: noise, or a spike that flag_spikes() overlooks. Where the
+/// wavelength is known, patches that show along the flow are mended first (mend_fringe_islands()).
 ///
 /// Source: our own. Validity: noise below an eighth of the wavelength (else nothing is done); steps
 /// sharp within one pixel. A patch whose border shows a gap is not found here: so it may be where

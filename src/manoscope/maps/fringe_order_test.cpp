@@ -158,6 +158,29 @@ TEST(FringePatches, DustIsFlaggedForItsBorderIsNoPlainJump) {
   EXPECT_GT(found.flagged_pixels, 150);
 }
 
+TEST(FringePatches, ASpikeThatTheSpikeFinderOverlooksIsFlagged) {
+  // With fewer than two good neighbours across, and two pixels from a spike of twice its height,
+  // whose mean with the pixel on the other side it happens to meet.
+  Scene s = scene(10e-6, kNoise.si(), 0.0, 6);
+  const auto spike = [&](Index iz, Index ix, double size) { s.map.height(iz, ix) += size; };
+  spike(60, 300, 1.2e-6);
+  for (const Index iz : {59, 61, 62}) {
+    s.map.flags(iz, 300) = PixelFlag::no_data;
+    s.map.height(iz, 300) = 0.0;
+  }
+  spike(96, 500, 1.2e-6);
+  spike(98, 500, 2.4e-6);
+  spike(120, 700, -1.5e-6);
+  spike(120, 702, -3.0e-6);
+  EXPECT_EQ(flag_spikes(s.map, kNoise, 6.0), 2);
+  const FringePatches found = mend_fringe_patches(s.map, kNoise, std::nullopt);
+  EXPECT_EQ(found.mended, 0);
+  EXPECT_EQ(found.flagged_pixels, 3);
+  EXPECT_EQ(wrong_pixels(s, 130e-9), 0);
+  // What the two steps take for bad beyond the five: noise alone, one in 10^9.
+  EXPECT_EQ(count_set(s.map.flags, PixelFlag::spike | PixelFlag::fringe_order), 5);
+}
+
 TEST(FringePatches, NoiseAboveAnEighthOfTheWavelengthHidesThem) {
   Scene s = scene(10e-6, 80e-9, 0.0, 5);
   const FringePatches found = mend_fringe_patches(s.map, 80.0 * nm, kWavelength);

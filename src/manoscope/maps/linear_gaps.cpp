@@ -4,11 +4,62 @@
 #include <cmath>
 
 namespace manoscope::maps::linear {
+namespace {
 
-MapGaps::MapGaps(const LinearReducer::Geometry& geometry)
+/// Bits of the first n rows of a word of Block::missing.
+std::uint64_t rows_up_to(Index n) {
+  if (n <= 0) return 0;
+  return ~std::uint64_t{0} >> (64 - kLanes * std::min(n, kRows));
+}
+
+/// What happens to gaps in a block, a word to kLanes columns.
+struct FindEvents {
+  /// Reads the missing pixels, of which only those `inside` the channel count.
+  /// @param last_rows     as MapGaps; brought up to date.
+  /// @param all           rows of the block
+  /// @param single_rows   rows after a single gap that has a good pixel and two inner rows about it
+  /// @param singles       set at the good pixel that ends such a gap
+  /// @param others        set where any other gap ends, and at the second pixel of a gap
+  /// @param n_rows        of the block
+  template <class Lanes>
+  [[gnu::always_inline]] static void run(const std::uint64_t* missing, const std::uint64_t* inside,
+                                         std::uint64_t* last_rows, std::uint64_t all,
+                                         std::uint64_t single_rows, std::uint64_t* singles,
+                                         std::uint64_t* others, Index n_rows, Index n_words) {
+    const auto shift = static_cast<unsigned>(8 * (n_rows - 1));
+    for (Index k = 0; k < n_words; ++k) {
+      const std::uint64_t here = missing[k] & inside[k], before = last_rows[k];
+      const std::uint64_t above = here << 8 | (before & 0xff);
+      const std::uint64_t two_above = above << 8 | before >> 8;
+      const std::uint64_t ends = ~here & above & all;
+      const std::uint64_t ends_single = ends & ~two_above & single_rows;
+      const std::uint64_t other = (ends & ~ends_single) | (here & above & ~two_above);
+      // In a column with others all take the careful way, one after the other.
+      std::uint64_t columns = other | other >> 32;
+      columns |= columns >> 16;
+      columns |= columns >> 8;
+      columns &= 0xff;
+      columns |= columns << 8;
+      columns |= columns << 16;
+      columns |= columns << 32;
+      singles[k] = ends_single & ~columns;
+      others[k] = other | (ends_single & columns);
+      last_rows[k] = (here >> shift & 0xff) | (above >> shift & 0xff) << 8;
+    }
+  }
+};
+
+}  // namespace
+
+MapGaps::MapGaps(const LinearReducer::Geometry& geometry, numerics::Instructions instructions)
     : geometry_(geometry),
-      open_(geometry.inside.size()),
+      instructions_(instructions),
+      last_rows_(geometry.inside.size()),
+      singles_(geometry.inside.size()),
+      others_(geometry.inside.size()),
+      list_(geometry.inside.size()),
       columns_(geometry.inside.size() * kLanes),
+      open_(columns_.size(), Open{kNone, 0.0F}),
       several_(columns_.size()) {
   // By ColumnGaps::close() where all weights are alike: what the pixel gives goes to the two beside
   // it in halves, and sum and balance of the weights stay.
@@ -22,92 +73,80 @@ void MapGaps::reset() {
   if (n_missing_ == 0) return;
   n_missing_ = 0;
   any_open_ = false;
-  std::fill(open_.begin(), open_.end(), std::uint8_t{0});
+  std::fill(last_rows_.begin(), last_rows_.end(), std::uint64_t{0});
   std::fill(columns_.begin(), columns_.end(), Column{});
   for (const Index ix : with_several_) several_[static_cast<std::size_t>(ix)] = {};
   with_several_.clear();
 }
 
-/// Single gaps that a block shows with two good pixels on either side, in columns that show no
-/// other gap: which of them is taken first makes no difference.
-struct MapGaps::Rows {
-  std::uint64_t all,
-      singles;  ///< rows of the block; those where a gap of one pixel is taken at once
-
-  Rows(const LinearReducer::Geometry& g, const Block& block, Index first)
-      : all(up_to(block.n_rows)), singles(0) {
-    // Two rows before must be known, and the row after must be in the block.
-    const Index begin = std::max<Index>(1, g.inner_begin + 1 - first);
-    const Index end = std::min(block.n_rows, g.inner_end - first) - 1;
-    if (end > begin) singles = up_to(end) & ~up_to(begin);
-  }
-  static std::uint64_t up_to(Index n) { return n == 0 ? 0 : ~std::uint64_t{0} >> (64 - 8 * n); }
-
-  std::uint64_t alone(std::uint64_t missing, std::uint8_t open) const {
-    const std::uint64_t above = missing << 8 | open, two_above = above << 8;
-    const std::uint64_t near = above | two_above | missing >> 8 | missing >> 16;
-    const std::uint64_t found = missing & ~near & singles;
-    const std::uint64_t rest = missing & ~found;
-    std::uint64_t columns = (rest ^ (rest << 8 | open)) & all;
-    columns |= columns >> 32;
-    columns |= columns >> 16;
-    columns |= columns >> 8;
-    return found & ~((columns & 0xff) * 0x0101010101010101);
-  }
-};
-
 /// Opens and closes gaps where the pixels of a column change from good to missing and back.
-void MapGaps::follow(const Block& block, const Pixels& pixels) {
+void MapGaps::follow(const Block& block, Index first, const Pixels& pixels) {
   const LinearReducer::Geometry& g = geometry_;
-  const Rows rows(g, block, pixels.first);
-  const Index last_row = kLanes * (block.n_rows - 1), row_bytes = pixels.row_bytes;
-  const std::uint64_t *const words = block.missing, *const inside = g.inside.data();
-  Column* const columns = columns_.data();
-  std::uint8_t* const open = open_.data();
-  unsigned any_open = 0;
-  Index n_singles = 0;
-  for (Index group = block.first / kLanes; group < block.end / kLanes; ++group) {
-    const std::uint64_t missing = words[group] & inside[group];
-    const std::uint8_t open_before = open[group];
-    const std::uint64_t alone = rows.alone(missing, open_before);
-    for_each_bit(alone, group, [&](Index r, Index ix) {
-      const char* const at = pixels.rows + (r - 1) * row_bytes + 4 * ix;
-      float before = 0.0F, after = 0.0F;
-      std::memcpy(&before, at, sizeof before);
-      std::memcpy(&after, at + 2 * row_bytes, sizeof after);
-      columns[ix].add_single(pixels.first + r + 1, double{before} + double{after});
-      ++n_singles;
-    });
-    const std::uint64_t others = missing & ~alone, above = others << kLanes | open_before;
-    for_each_bit((others ^ above) & rows.all, group, [&](Index r, Index ix) {
-      if ((above >> (kLanes * r + ix % kLanes) & 1) != 0) {
-        close(ix, pixels.first + r, pixels);
+  const Index begin = block.first / kLanes, end = block.end / kLanes;
+  // A gap of one pixel is a single one if it and the pixels about it lie in inner rows.
+  const std::uint64_t single_rows =
+      rows_up_to(g.inner_end - first) & ~rows_up_to(g.inner_begin + 2 - first);
+  numerics::run_in_lanes<FindEvents>(instructions_, block.missing + begin, g.inside.data() + begin,
+                                     last_rows_.data() + begin, rows_up_to(block.n_rows),
+                                     single_rows, singles_.data() + begin, others_.data() + begin,
+                                     block.n_rows, end - begin);
+  list_.clear();
+  std::uint64_t open = 0;
+  for (Index group = begin; group < end; ++group) {
+    const auto at = static_cast<std::size_t>(group);
+    list_.add(singles_[at], group);
+    open |= last_rows_[at] & 0xff;
+    for_each_bit(others_[at], group, [&](BlockPixel pixel) {
+      const Index ix = pixel.column, iz = first + pixel.row;
+      if ((block.missing[at] >> (kLanes * pixel.row + ix % kLanes) & 1) != 0) {
+        open_[static_cast<std::size_t>(ix)] = opened(ix, iz - 1, pixels);
       } else {
-        this->open(ix, pixels.first + r, pixels);
+        close(ix, iz, pixels);
       }
     });
-    open[group] = static_cast<std::uint8_t>(missing >> last_row);
-    any_open |= open[group];
   }
-  any_open_ = any_open != 0;
-  n_missing_ += n_singles;
+  any_open_ = open != 0;
+  for (const std::uint32_t at : list_) {
+    const BlockPixel pixel(at);
+    const Index upper = first + pixel.row;
+    Column& column = columns_[static_cast<std::size_t>(pixel.column)];
+    if (column.follows_other(upper)) {
+      close(pixel.column, upper, pixels);
+      continue;
+    }
+    column.add_single(upper, double{pixels.height(upper - 2, pixel.column)} +
+                                 double{pixels.height(upper, pixel.column)});
+    ++n_missing_;
+  }
+  if (any_open_ && first + block.n_rows == g.weights.last + 1) close_all(begin, end, pixels);
 }
 
-void MapGaps::open(Index ix, Index iz, const Pixels& pixels) {
-  Column& column = columns_[static_cast<std::size_t>(ix)];
-  column.first = static_cast<std::int32_t>(iz);
-  column.before = iz > geometry_.weights.first ? pixels.height(iz - 1, ix) : 0.0F;
+/// Closes what is open after the last row.
+void MapGaps::close_all(Index begin, Index end, const Pixels& pixels) {
+  for (Index group = begin; group < end; ++group) {
+    for_each_bit(last_rows_[static_cast<std::size_t>(group)] & 0xff, group, [&](BlockPixel pixel) {
+      close(pixel.column, geometry_.weights.last + 1, pixels);
+    });
+  }
+  any_open_ = false;
+}
+
+MapGaps::Open MapGaps::opened(Index ix, Index iz, const Pixels& pixels) const {
+  return {iz, iz > geometry_.weights.first ? pixels.height(iz - 1, ix) : 0.0F};
 }
 
 /// Closes the open gap of a column at the good pixel of row `upper`, or beyond the last row.
 void MapGaps::close(Index ix, Index upper, const Pixels& pixels) {
   const LinearReducer::Geometry& g = geometry_;
   Column& column = columns_[static_cast<std::size_t>(ix)];
-  const Index lower = column.first - 1;
+  Open& open = open_[static_cast<std::size_t>(ix)];
+  const Open gap = open.first == kNone ? opened(ix, upper - 1, pixels) : open;
+  open.first = kNone;
+  const Index lower = gap.first - 1;
   n_missing_ += upper - lower - 1;
   if (upper == lower + 2 && lower >= g.inner_begin && upper < g.inner_end &&
-      (column.upper != lower || column.last_single)) {
-    return column.add_single(upper, double{column.before} + double{pixels.height(upper, ix)});
+      !column.follows_other(upper)) {
+    return column.add_single(upper, double{gap.before} + double{pixels.height(upper, ix)});
   }
   if (!column.several) with_several_.push_back(ix);
   column.several = true;
@@ -117,7 +156,7 @@ void MapGaps::close(Index ix, Index upper, const Pixels& pixels) {
   Change& change = several_[static_cast<std::size_t>(ix)];
   change.n_inside += std::min(upper, g.weights.last) - std::max(lower + 1, g.weights.first + 1);
   if (lower <= g.weights.first || upper >= g.weights.last) {
-    return close_at_edge(ix, lower, upper, next_to_single, pixels);
+    return close_at_edge(ix, upper, gap, next_to_single, pixels);
   }
   const double largest = std::max(g.options.largest_gap * g.width, 2.5 * g.grid.pitch_z.si());
   if (g.grid.z(upper) - g.grid.z(lower) > largest) {
@@ -126,16 +165,16 @@ void MapGaps::close(Index ix, Index upper, const Pixels& pixels) {
   }
   const double by = change.weights.close(g.weights, g.grid, lower, upper, g.width);
   if (next_to_single) change.weights.squares += 2.0 * by * single_by_;
-  change.height += by * (double{column.before} + double{pixels.height(upper, ix)});
+  change.height += by * (double{gap.before} + double{pixels.height(upper, ix)});
 }
 
 /// The same where the gap reaches an edge: the clamped edge itself, zeta = 0, takes the place of
 /// the pixel beyond it.
-void MapGaps::close_at_edge(Index ix, Index lower, Index upper, bool next_to_single,
+void MapGaps::close_at_edge(Index ix, Index upper, const Open& gap, bool next_to_single,
                             const Pixels& pixels) {
   const LinearReducer::Geometry& g = geometry_;
   const ColumnWeights& weights = g.weights;
-  const Column& column = of(ix);
+  const Index lower = gap.first - 1;
   Change& change = several_[static_cast<std::size_t>(ix)];
   const bool below = lower <= weights.first;
   if (below && upper >= weights.last) {
@@ -146,7 +185,7 @@ void MapGaps::close_at_edge(Index ix, Index lower, Index upper, bool next_to_sin
   // had given if it is good.
   const Index node = below ? upper : lower;
   const Index from = below ? weights.first : lower + 1, to = below ? upper - 1 : weights.last;
-  const double before = column.before;
+  const double before = gap.before;
   if (below && lower == weights.first) change.height -= weights.of(lower) * before;
   if (!below && upper == weights.last) {
     change.height -= weights.of(upper) * double{pixels.height(upper, ix)};
@@ -160,16 +199,6 @@ void MapGaps::close_at_edge(Index ix, Index lower, Index upper, bool next_to_sin
   if (!below && next_to_single) change.weights.squares += 2.0 * by * single_by_;
   change.height += by * (below ? double{pixels.height(node, ix)} : before);
   if (to_edge >= 1.5 * pitch) change.weights.sixth += std::pow(to_edge, 6);
-}
-
-void MapGaps::close_all() {
-  if (!any_open_) return;
-  const Pixels none{nullptr, nullptr, 0, 0};  // no row lies beyond the last
-  for (std::size_t group = 0; group < open_.size(); ++group) {
-    for_each_bit(open_[group], static_cast<Index>(group),
-                 [&](Index, Index ix) { close(ix, geometry_.weights.last + 1, none); });
-  }
-  any_open_ = false;
 }
 
 }  // namespace manoscope::maps::linear

@@ -72,11 +72,20 @@ LinearReducer::Geometry::Geometry(const CameraGrid& map, const ChannelFrame& fra
   inner_begin = weights.first + 2;
   inner_end = weights.last - 1;
   inner_weight = grid.pitch_z.si() / width;
-  inside.assign(static_cast<std::size_t>((grid.nx + numerics::kLanes - 1) / numerics::kLanes), 0);
-  for (Index ix = first; ix < end; ++ix) {
-    constexpr std::uint64_t kEveryByte = 0x0101010101010101;
-    inside[static_cast<std::size_t>(ix / numerics::kLanes)] |= kEveryByte << ix % numerics::kLanes;
-  }
+  const auto words = [&](const auto& holds) {
+    std::vector<std::uint64_t> of_columns(
+        static_cast<std::size_t>((grid.nx + numerics::kLanes - 1) / numerics::kLanes));
+    for (Index ix = 0; ix < grid.nx; ++ix) {
+      constexpr std::uint64_t kEveryByte = 0x0101010101010101;
+      if (!holds(ix)) continue;
+      of_columns[static_cast<std::size_t>(ix / numerics::kLanes)] |= kEveryByte
+                                                                     << ix % numerics::kLanes;
+    }
+    return of_columns;
+  };
+  inside = words([&](Index ix) { return ix >= first && ix < end; });
+  in_map = words([](Index) { return true; });
+  beyond_ends = words([&](Index ix) { return ix < left || ix >= right; });
 }
 
 Index LinearReducer::Geometry::rows_alike(Index iz) const {

@@ -38,8 +38,9 @@ struct LinearReducer::Geometry {
   /// Rows [inner_begin, inner_end) all have the same weight in a width average.
   Index inner_begin = 0, inner_end = 0;
   double inner_weight = 0.0;
-  /// A word to kLanes columns, each of its bytes with a bit to a column inside the channel.
-  std::vector<std::uint64_t> inside;
+  /// A word to kLanes columns, each of its bytes with a bit to a column: of those inside the
+  /// channel, of all that the map has, and of those beyond the channel's ends.
+  std::vector<std::uint64_t> inside, in_map, beyond_ends;
   WidthAverageOptions options;
 
   bool is_rim_row(Index iz) const { return iz < rim_below || iz >= rim_above; }

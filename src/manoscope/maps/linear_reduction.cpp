@@ -85,9 +85,10 @@ class LinearPass::Sums {
         edge_columns_(static_cast<std::size_t>(stride_), 0.0),
         rim_(stride_),
         last_row_(static_cast<std::size_t>(4 * stride_)),
-        row_before_(static_cast<std::size_t>(4 * nx_)),
+        rows_before_(static_cast<std::size_t>(8 * nx_)),
         missing_(static_cast<std::size_t>(stride_ / kLanes)),
-        gaps_(geometry) {}
+        bits_(missing_.size()),
+        gaps_(geometry, instructions) {}
 
   void add_rows(std::span<const char> rows);
   LinearReduction finish(double metres_per_unit, const std::string& name);
@@ -95,13 +96,15 @@ class LinearPass::Sums {
 
  private:
   /// Missing pixels of a row of the rim: how many, sum a, sum a^2.
-  using MissingOfRow = std::array<double, 3>;
+  struct MissingOfRow {
+    double n, a, aa;
+  };
 
-  void take(const char* rows, Index n_rows);
+  void take(const char* rows, Index n_rows, const Pixels& pixels);
   void take_rim(Block block);
   void add_moments(Block block, std::array<MissingOfRow, kRows>& missing);
   void fold_rim();
-  void take_columns(Block block);
+  void take_columns(Block block, const Pixels& pixels);
   void fill_profile(double metres_per_unit, const std::string& name, LinearReduction& result) const;
   RimPlane fit_plane(double metres_per_unit, const std::string& name) const;
 
@@ -112,10 +115,12 @@ class LinearPass::Sums {
   RimColumns rim_;
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero();
   double squares_ = 0.0;
-  Eigen::Matrix3d missing_normal_ = Eigen::Matrix3d::Zero();
-  std::vector<char> last_row_, row_before_;
-  const char* before_ = nullptr;  ///< row before the block at work
+  using Normal = Eigen::Array<double, 6, 1>;  ///< arguments of normal_matrix()
+  Normal missing_normal_ = Normal::Zero();
+  std::vector<char> last_row_;
+  std::vector<char> rows_before_;  ///< the two before those that have just come
   std::vector<std::uint64_t> missing_;
+  BitList bits_;
   bool rim_misses_ = false, columns_miss_ = false;  ///< pixels of the last block
   MapGaps gaps_;
 };
@@ -146,24 +151,30 @@ void LinearPass::Sums::add_rows(std::span<const char> rows) {
     std::memcpy(last_row_.data(), last, row_bytes);
     --n_rows;
   }
-  before_ = row_before_.data();
+  const Pixels pixels{at, rows_before_.data(), n_taken_, 4 * nx_};
   while (n_rows > 0) {
     const Index n = std::min({n_rows, geometry_.rows_alike(n_taken_), kRows});
-    take(at, n);
+    take(at, n, pixels);
     at += static_cast<std::size_t>(n) * row_bytes;
-    before_ = at - row_bytes;
     n_rows -= n;
   }
-  if (copies) take(last_row_.data(), 1);
-  std::memcpy(row_before_.data(), last, row_bytes);
+  if (copies) take(last_row_.data(), 1, pixels);
+  if (last == rows.data()) {
+    std::memmove(rows_before_.data(), rows_before_.data() + row_bytes, row_bytes);
+    std::memcpy(rows_before_.data() + row_bytes, last, row_bytes);
+  } else {
+    std::memcpy(rows_before_.data(), last - row_bytes, 2 * row_bytes);
+  }
 }
 
-void LinearPass::Sums::take(const char* rows, Index n_rows) {
+void LinearPass::Sums::take(const char* rows, Index n_rows, const Pixels& pixels) {
   const auto& g = geometry_;
   const Block block{rows, n_rows, 4 * nx_, 0, stride_, missing_.data(), false};
   if (n_taken_ == g.rim_below || n_taken_ == g.rim_above) fold_rim();
   take_rim(block);
-  if (n_taken_ >= g.weights.first && n_taken_ <= g.weights.last) take_columns(block);
+  if (n_taken_ >= g.weights.first && n_taken_ <= g.weights.last) {
+    take_columns(block, pixels);
+  }
   n_taken_ += n_rows;
 }
 
@@ -186,7 +197,7 @@ void LinearPass::Sums::take_rim(Block block) {
   for (Index r = 0; rim_misses_ && r < block.n_rows; ++r) {
     const auto [n, a, aa] = missing[static_cast<std::size_t>(r)];
     const double b = g.b[n_taken_ + r];
-    if (n > 0.0) missing_normal_ += normal_matrix(n, a, n * b, aa, a * b, n * b * b);
+    missing_normal_ += Normal{n, a, n * b, aa, a * b, n * b * b};
   }
 }
 
@@ -196,16 +207,19 @@ void LinearPass::Sums::add_moments(Block block, std::array<MissingOfRow, kRows>&
   const Index n_found = linear::add_rows(instructions_, block, moments);
   if (n_found == 0) return;
   rim_misses_ = true;
-  const bool all = g.is_rim_row(n_taken_);
+  const std::vector<std::uint64_t>& on_rim = g.is_rim_row(n_taken_) ? g.in_map : g.beyond_ends;
+  bits_.clear();
   for (Index group = block.first / kLanes; group < block.end / kLanes; ++group) {
-    for_each_bit(missing_[static_cast<std::size_t>(group)], group, [&](Index r, Index ix) {
-      if (ix >= nx_ || (!all && ix >= g.left && ix < g.right)) return;
-      MissingOfRow& row = missing[static_cast<std::size_t>(r)];
-      const double a = g.a[ix];
-      row[0] += 1.0;
-      row[1] += a;
-      row[2] += a * a;
-    });
+    const auto at = static_cast<std::size_t>(group);
+    bits_.add(missing_[at] & on_rim[at], group);
+  }
+  for (const std::uint32_t at : bits_) {
+    const BlockPixel pixel(at);
+    MissingOfRow& row = missing[static_cast<std::size_t>(pixel.row)];
+    const double a = g.a[pixel.column];
+    row.n += 1.0;
+    row.a += a;
+    row.aa += a * a;
   }
 }
 
@@ -234,7 +248,7 @@ void LinearPass::Sums::fold_rim() {
   rim_.clear(stride_);
 }
 
-void LinearPass::Sums::take_columns(Block block) {
+void LinearPass::Sums::take_columns(Block block, const Pixels& pixels) {
   const auto& g = geometry_;
   block.first = g.first / kLanes * kLanes;
   block.end = whole_lanes(g.end);
@@ -249,14 +263,16 @@ void LinearPass::Sums::take_columns(Block block) {
   }
   columns_miss_ = n_found > 0;
   if (n_found > 0 || gaps_.any_open()) {
-    gaps_.follow(block, {block.rows, before_, n_taken_, block.row_bytes});
+    gaps_.follow(block, n_taken_, pixels);
   }
 }
 
 RimPlane LinearPass::Sums::fit_plane(double metres_per_unit, const std::string& name) const {
   constexpr double kFewest = 100.0;  // a plane to a tenth of the pixel noise
   const auto& g = geometry_;
-  const Eigen::Matrix3d normal = g.normal - missing_normal_;
+  const Normal& none = missing_normal_;
+  const Eigen::Matrix3d normal =
+      g.normal - normal_matrix(none[0], none[1], none[2], none[3], none[4], none[5]);
   const double n = std::round(normal(0, 0));
   const auto factors = normal.ldlt();
   const Eigen::Vector3d pivots = factors.vectorD();
@@ -287,7 +303,6 @@ RimPlane LinearPass::Sums::fit_plane(double metres_per_unit, const std::string& 
 
 LinearReduction LinearPass::Sums::finish(double metres_per_unit, const std::string& name) {
   MANO_ASSERT(n_taken_ == geometry_.grid.nz);
-  gaps_.close_all();
   fold_rim();
   LinearReduction result;
   result.plane = fit_plane(metres_per_unit, name);
@@ -326,27 +341,39 @@ void LinearPass::Sums::fill_profile(double metres_per_unit, const std::string& n
   profile.zeta = to_outward * profile.zeta -
                  (plane.offset + plane.tilt_x * (profile.x - plane.x_centre)) * g.weights.sum -
                  plane.tilt_z * balance;
-  const double inverse_cube = 1.0 / (g.width * g.width * g.width);
-  for (Index ix = g.first; gaps_.missing() > 0 && ix < g.end; ++ix) {
-    if (!gaps_.in_column(ix)) continue;
-    const MapGaps::Change change = gaps_.in(ix);
-    const Index i = station(ix);
-    const double inside = (n_rows - static_cast<double>(change.n_inside)) * pitch / g.width;
-    if (change.dropped || inside < g.options.smallest_coverage) {
+  if (gaps_.missing() > 0) {
+    Array1 count(n), height(n), squares(n), sixth(n);
+    for (Index ix = g.first; ix < g.end; ++ix) {
+      const MapGaps::Singles singles = gaps_.singles_in(ix);
+      const Index i = station(ix);
+      count[i] = singles.count;
+      height[i] = singles.height;
+      squares[i] = g.weights.squares + singles.squares;
+      sixth[i] = singles.sixth;
+    }
+    profile.zeta += to_outward * height;
+    for (const Index ix : gaps_.with_several()) {
+      const MapGaps::Change& change = gaps_.several_in(ix);
+      const Index i = station(ix);
+      count[i] += change.dropped ? n_rows + 1.0 : static_cast<double>(change.n_inside);
+      squares[i] += change.weights.squares;
+      sixth[i] += change.weights.sixth;
+      measured[i] += change.weights.measured;
+      mean_z[i] += g.across * change.weights.mean_z;
+      const double level = plane.offset + plane.tilt_x * (profile.x[i] - plane.x_centre);
+      profile.zeta[i] += to_outward * change.height - level * change.weights.measured -
+                         plane.tilt_z * g.across * change.weights.mean_z;
+    }
+    // A parabola of this mean sags by curvature gap^3 / 12 below the chord of a gap.
+    const double inverse_cube = 1.0 / (g.width * g.width * g.width);
+    profile.uncertainty.independent =
+        (squares.max(0.0) * (noise * noise) + (profile.zeta * inverse_cube).square() * sixth)
+            .sqrt();
+    for (Index i = 0; i < n; ++i) {
+      if ((n_rows - count[i]) * pitch / g.width >= g.options.smallest_coverage) continue;
       profile.flags[i] = StationFlag::no_data;
       profile.zeta[i] = profile.uncertainty.independent[i] = measured[i] = mean_z[i] = 0.0;
-      continue;
     }
-    measured[i] += change.weights.measured;
-    mean_z[i] += g.across * change.weights.mean_z;
-    const double level = plane.offset + plane.tilt_x * (profile.x[i] - plane.x_centre);
-    profile.zeta[i] += to_outward * change.height - level * change.weights.measured -
-                       plane.tilt_z * g.across * change.weights.mean_z;
-    // A parabola of this mean sags by curvature gap^3 / 12 below the chord of a gap.
-    const double sag = profile.zeta[i] * inverse_cube;
-    profile.uncertainty.independent[i] =
-        std::sqrt((g.weights.squares + change.weights.squares) * noise * noise +
-                  sag * sag * change.weights.sixth);
   }
   profile.uncertainty.modes.reserve(4);  // three of the plane, one of the quadrature
   add_shared_modes(profile, plane, measured, mean_z, g.grid.pitch_z / Length::from_si(g.width),

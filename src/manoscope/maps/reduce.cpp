@@ -19,13 +19,7 @@ namespace manoscope::maps {
 namespace {
 
 double share(const Flags2& flags, FlagBits bit) {
-  Index count = 0;
-  for (Index iz = 0; iz < flags.rows(); ++iz) {
-    unsigned in_row = 0;  // narrower than Index: more of them side by side
-    for (Index ix = 0; ix < flags.cols(); ++ix) in_row += (flags(iz, ix) & bit) != 0;
-    count += in_row;
-  }
-  return static_cast<double>(count) / static_cast<double>(flags.size());
+  return static_cast<double>(count_set(flags, bit)) / static_cast<double>(flags.size());
 }
 
 /// dzeta/dx by a line through the good stations within `reach` to either side; 0 where too few.

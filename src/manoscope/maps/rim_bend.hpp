@@ -22,9 +22,10 @@ struct RimBend {
   /// standard uncertainty for white noise.
   Length at_middle{}, at_middle_uncertainty{};
 
+  double u(double x) const { return (x - x_centre) / reach_x; }
+  double v(double z) const { return z / reach_z; }
   Terms terms(double x, double z) const {
-    const double u = (x - x_centre) / reach_x, v = z / reach_z;
-    return (Terms() << 1.0, u, v, u * u, u * v, v * v).finished();
+    return (Terms() << 1.0, u(x), v(z), u(x) * u(x), u(x) * v(z), v(z) * v(z)).finished();
   }
   double height(double x, double z) const { return coefficient.dot(terms(x, z)); }
 };

@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/maps/reduce.hpp"
+#include "manoscope/numerics/robust.hpp"
 #include "tests/support/synthetic_map.hpp"
 
 namespace manoscope::maps {
@@ -101,6 +105,65 @@ TEST(RimBend, IsReportedWithAnUncertaintyThatHolds) {
   }
   EXPECT_NEAR(flat.width(), 1.0, 0.3);  // 60 pulls: 0.09, three times
   EXPECT_NEAR(bent.width(), 1.0, 0.3);
+}
+
+/// The same fit, point by point.
+RimBend slow_fit(const ChannelMap& map, const Flags2& rim, Length sigma) {
+  RimBend bend = fit_rim_bend(map, rim, sigma, kLength);  // for the scales of x and z alone
+  std::vector<RimBend::Terms> terms;
+  std::vector<double> heights;
+  Index n_rim = 0, passed = 0;
+  for (const FlagBits on_rim : rim.reshaped()) n_rim += on_rim;
+  const Index every = std::max<Index>(1, n_rim / 20000);
+  for (Index iz = 0; iz < map.grid.nz; ++iz) {
+    for (Index ix = 0; ix < map.grid.nx; ++ix) {
+      if (rim(iz, ix) == 0 || map.flags(iz, ix) != 0 || passed++ % every != 0) continue;
+      terms.push_back(bend.terms(map.grid.x(ix), map.grid.z(iz)));
+      heights.push_back(map.height(iz, ix));
+    }
+  }
+  bend.coefficient.setZero();
+  double spread = sigma.si();
+  for (int pass = 0; pass < 3; ++pass) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    RimBend::Terms right = RimBend::Terms::Zero();
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      const double off = (heights[i] - bend.coefficient.dot(terms[i])) / (4.685 * spread);
+      const double weight = std::abs(off) < 1.0 ? std::pow(1.0 - off * off, 2) : 0.0;
+      normal += weight * terms[i] * terms[i].transpose();
+      right += weight * heights[i] * terms[i];
+    }
+    bend.coefficient = normal.fullPivLu().solve(right);
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      residuals.push_back(heights[i] - bend.coefficient.dot(terms[i]));
+    }
+    spread = numerics::mad_sigma(residuals, 0.0);
+    bend.covariance = spread * spread * normal.inverse();
+  }
+  bend.sigma = Length::from_si(spread);
+  return bend;
+}
+
+TEST(RimBend, IsThatOfAFitPointByPoint) {
+  for (const Length margin :
+       {50.0 * um, -400.0 * um}) {  // all of the good pixels, and every second
+    ChannelMap map =
+        to_channel_frame(wall_map({60e-9, -30e-9, 20e-9}, 0.0, 20e-9, 3), plain_frame());
+    RandomStream stream(37, "damage");
+    for (Index i = 0; i < map.height.size(); ++i) {
+      if (stream.uniform() < 0.02) map.height.data()[i] += 2e-6 * stream.uniform();
+      if (stream.uniform() < 0.02) map.flags.data()[i] = PixelFlag::no_data;
+    }
+    const Flags2 rim = rim_mask(map.grid, kLength, kWidth, margin);
+    const RimBend fast = fit_rim_bend(map, rim, 25.0 * nm, kLength);
+    const RimBend slow = slow_fit(map, rim, 25.0 * nm);
+    // Round-off of sums over 20 000 pixels.
+    EXPECT_LT((fast.coefficient - slow.coefficient).norm(), 1e-10 * slow.coefficient.norm());
+    EXPECT_LT((fast.covariance - slow.covariance).norm(), 1e-10 * slow.covariance.norm());
+    EXPECT_NEAR(fast.sigma / slow.sigma, 1.0, 1e-12);
+    EXPECT_NEAR(fast.sigma.in(nm), 20.0, 1.0);  // 2 % of outliers, noise of a robust deviation
+  }
 }
 
 TEST(RimBend, IsZeroWhereTheRimDoesNotDetermineIt) {

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/flags.hpp"
+#include "manoscope/numerics/ranks.hpp"
 
 namespace manoscope::numerics {
 namespace {
@@ -202,36 +204,39 @@ Few every_nth(const GridPoints& points) {
   return few;
 }
 
-/// The value of rank k.
-double ranked(std::vector<double>& values, std::size_t k) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(k);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+/// Median of every sixteenth value, to a tenth or so.
+double rough_median(const std::vector<double>& values) {
+  std::vector<double> some;
+  some.reserve(values.size() / 16 + 1);
+  for (std::size_t i = 0; i < values.size(); i += 16) some.push_back(values[i]);
+  const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+  std::nth_element(some.begin(), middle, some.end());
+  return *middle;
 }
 
-/// Where the median of all residuals is looked for.
-struct Bracket {
-  double low, high;
-};
-
-/// Four standard deviations about the median of what the sizes were taken from.
-Bracket bracket_of_median(std::vector<double>& sizes) {
-  const auto n = static_cast<double>(sizes.size());
-  const auto reach = static_cast<std::size_t>(2.0 * std::sqrt(n)) + 1, middle = sizes.size() / 2;
-  const double high = ranked(sizes, std::min(middle + reach, sizes.size() - 1));
-  return {ranked(sizes, middle - std::min(middle, reach)), high};
+/// Where the median of all residuals is looked for: four standard deviations about the median of
+/// these few.
+Range bracket_of_median(std::vector<double>& sizes) {
+  const std::size_t n = sizes.size(), middle = n / 2;
+  const auto reach = static_cast<std::size_t>(2.0 * std::sqrt(static_cast<double>(n))) + 1;
+  const std::size_t lower = middle - std::min(middle, reach),
+                    upper = std::min(middle + reach, n - 1);
+  if (const auto range = range_of_ranks(sizes, lower, upper, {0.0, 3.0 * rough_median(sizes)})) {
+    return *range;
+  }
+  const double high = values_of_ranks(sizes, upper, upper, {}).high;
+  return {values_of_ranks(sizes, lower, lower, {}).low, high};
 }
 
 /// Least absolute deviations of a few points, to within about their own uncertainty: `c`, and a
 /// bracket of four standard deviations about the median of their residuals.
 /// @return nullopt if they lie on one line.
-std::optional<Bracket> start_from_few(const GridPoints& points, Instructions instructions,
-                                      Eigen::Vector3d& c) {
+std::optional<Range> start_from_few(const GridPoints& points, Instructions instructions,
+                                    Eigen::Vector3d& c) {
   const Few few = every_nth(points);
   if (few.v.size() < 64) return std::nullopt;
   constexpr int kSteps = 30;
-  std::vector<double> sizes(few.v.size()), reordered;
-  const double* const all_sizes = sizes.data();
+  std::vector<double> sizes(few.v.size());
   double floor = 1e150;  // first all points count alike
   for (int step = 0; step < kSteps; ++step) {
     LaneSums sums;
@@ -243,11 +248,8 @@ std::optional<Bracket> start_from_few(const GridPoints& points, Instructions ins
     }
     const Eigen::Vector3d by = normal.step();
     c += by;
-    // Weights stay bounded: no residual counts as smaller than a hundredth of the median, here of
-    // every fourth of them.
-    reordered.clear();
-    for (std::size_t i = 0; i < sizes.size(); i += 4) reordered.push_back(all_sizes[i]);
-    floor = std::max(1e-2 * ranked(reordered, reordered.size() / 2), 1e-300);
+    // Weights stay bounded: no residual counts as smaller than a hundredth of the median.
+    floor = std::max(1e-2 * rough_median(sizes), 1e-300);
     // A hundredth of the noise: half of what the few points leave open.
     if (by.cwiseAbs().maxCoeff() <= floor) break;
   }
@@ -256,19 +258,19 @@ std::optional<Bracket> start_from_few(const GridPoints& points, Instructions ins
   return bracket_of_median(sizes);
 }
 
-/// Median of the sizes of all residuals; `space` has room for all.
-double median_size(const GridPoints& points, Instructions instructions, const Eigen::Vector3d& c,
-                   const Bracket& guess, std::vector<double>& space) {
+/// The two middle ones of the sizes of all residuals; `space` has room for all.
+Range middle_sizes(const GridPoints& points, Instructions instructions, const Eigen::Vector3d& c,
+                   const Range& guess, std::vector<double>& space) {
   const auto n = static_cast<Index>(points.size());
   const Index lower = (n - 1) / 2, upper = n / 2;
-  for (const Bracket& bracket : {guess, Bracket{0.0, 0.5 * GridPoints::kAbsent}}) {
+  for (const Range& bracket : {guess, Range{0.0, 0.5 * GridPoints::kAbsent}}) {
     Index n_found = 0, n_below = 0;
     run_in_lanes<SizesWithin>(instructions, samples_of(points), c.data(), bracket.low, bracket.high,
                               space.data(), &n_found, &n_below);
     if (lower < n_below || upper >= n_below + n_found) continue;
-    const auto at = space.begin() + (upper - n_below);
-    std::nth_element(space.begin(), at, space.begin() + n_found);
-    return lower == upper ? *at : 0.5 * (*at + *std::max_element(space.begin(), at));
+    return values_of_ranks({space.data(), static_cast<std::size_t>(n_found)},
+                           static_cast<std::size_t>(lower - n_below),
+                           static_cast<std::size_t>(upper - n_below), bracket);
   }
   throw InternalError("a residual is beyond 1e199");
 }
@@ -295,7 +297,7 @@ GridPoints::GridPoints(const Array1& a, const Array1& b, const Array2& v, const 
   MANO_ASSERT(flags.rows() == v.rows() && flags.cols() == v.cols());
   const Index nx = v.cols();
   a_.resize(a_.size() + kLanes, 0.0);
-  values_.reserve(static_cast<std::size_t>(selected.cast<Index>().sum() + 2 * kLanes * v.rows()));
+  values_.reserve(static_cast<std::size_t>(count_set(selected, 1) + 2 * kLanes * v.rows()));
   for (Index iz = 0; iz < v.rows(); ++iz) {
     const FlagBits* const row = selected.data() + iz * nx;
     for (Index ix = 0; ix < nx;) {
@@ -334,10 +336,10 @@ std::optional<PlaneFit> fit_plane(const GridPoints& points, Instructions instruc
 
   const auto n = static_cast<double>(points.size());
   std::vector<double> space(points.values().size() + kLanes);
-  Bracket bracket = *start;
+  Range bracket = *start;
   for (int step = 0; step < kSteps; ++step) {
-    const double median = median_size(points, instructions, fit.coefficient, bracket, space);
-    fit.sigma = kNormalConsistency * median;
+    const Range middle = middle_sizes(points, instructions, fit.coefficient, bracket, space);
+    fit.sigma = kNormalConsistency * 0.5 * (middle.low + middle.high);
     // An exact fit has sigma = 0: then only exact points keep their weight.
     const double bound = kTukey * std::max(fit.sigma, 1e-300);
     LaneSums sums;
@@ -357,8 +359,8 @@ std::optional<PlaneFit> fit_plane(const GridPoints& points, Instructions instruc
     fit.covariance = fit.sigma * fit.sigma * normal.matrix.inverse();
     if (by.cwiseAbs().maxCoeff() <= 1e-6 * fit.sigma / std::sqrt(n)) break;
     // No residual moves by more than the plane does; a and b are of order 1.
-    const double reach = 1.5 * by.cwiseAbs().sum() + 1e-9 * median;
-    bracket = {median - reach, median + reach};
+    const double reach = 1.5 * by.cwiseAbs().sum() + 1e-9 * middle.high;
+    bracket = {middle.low - reach, middle.high + reach};
   }
   return fit;
 }
@@ -367,10 +369,10 @@ double mad_sigma(const GridPoints& points, Instructions instructions) {
   MANO_ASSERT(points.size() > 0);
   std::vector<double> sizes = every_nth(points).v;
   for (double& size : sizes) size = std::abs(size);
-  const Bracket bracket = sizes.empty() ? Bracket{0.0, 0.0} : bracket_of_median(sizes);
+  const Range bracket = sizes.empty() ? Range{0.0, 0.0} : bracket_of_median(sizes);
   std::vector<double> space(points.values().size() + kLanes);
-  return kNormalConsistency *
-         median_size(points, instructions, Eigen::Vector3d::Zero(), bracket, space);
+  const Range middle = middle_sizes(points, instructions, Eigen::Vector3d::Zero(), bracket, space);
+  return kNormalConsistency * 0.5 * (middle.low + middle.high);
 }
 
 }  // namespace manoscope::numerics
