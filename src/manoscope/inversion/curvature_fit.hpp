@@ -37,13 +37,17 @@ struct CurvatureFit {
 /// Fits b by generalised least squares with the covariance of all errors, each moving target and
 /// curvature together.
 ///
+/// Errors of the curvature itself would draw b towards what they do to target and curvature
+/// together: their mean products are taken off (Fuller, Measurement Error Models, 1987, sec. 2.2).
+///
 /// Where what is left of the targets is more than errors explain (chi-square beyond its mean by two
 /// standard deviations), the law itself is only nearly true: the same variance is then added to
 /// every window, as much as brings chi-square to its mean (Mandel & Paule, Anal. Chem. 42, 1194,
 /// 1970). That misfit is a definitional uncertainty of b (GUM D.3.4): a law that holds in no window
 /// is no better known for there being more of them, so it is not divided by their number.
 ///
-/// @return none with fewer than k + 3 windows, or shapes that cannot be told apart.
+/// @return none with fewer than k + 3 windows, shapes that cannot be told apart, or a curvature
+/// that is half noise.
 std::optional<CurvatureFit> fit_curvature(const CurvatureRows& rows);
 
 }  // namespace manoscope::inversion

@@ -16,8 +16,8 @@ using End = FreeCurve::End;
 constexpr double kSearchStep = 0.05, kSearchEnd = 1.0;  // widths
 constexpr double kStep = 0.1;                           // widths between windows
 constexpr int kWindows = 7;                             // at each end
-constexpr double kLeastClear = 10.0;  // curvature over its noise: attenuates b by 1 %
-constexpr Index kFewestLevels = 4;    // of a law b(zeta)
+constexpr double kLeastClear = 10.0;                    // curvature over its noise
+constexpr Index kFewestLevels = 4;                      // of a law b(zeta)
 constexpr double kLeastShare = 1e-6;  // of b, its uncertainty: exact data still have weights
 
 /// Stations at which every level counts.
