@@ -12,9 +12,10 @@ struct StationStiffness {
   Array2 value, uncertainty;  ///< (n_levels, n_x) Pa/m; NaN where the curve does not rise
 };
 
-/// The slopes of the constitutive curves at the levels, each with the standard uncertainty of the
-/// secant through the neighbouring levels: their labels, planes, places and pixels, and the gauge's
-/// gain. What interpolation does to a slope is not in it.
+/// The slopes of the constitutive curves at the levels. Their standard uncertainty is that of the
+/// slope of a parabola p(zeta) through a level and its neighbours (labels, planes, places and
+/// pixels of the three, the gauge's gain), and the difference between both slopes: what
+/// interpolation may do.
 StationStiffness station_stiffness(const calibration::ConstitutiveCurves& curves,
                                    const GaugeErrors& gauge = {});
 
