@@ -80,7 +80,7 @@ std::vector<bool> RestRows::smooth_windows(Index level) const {
   const Profile& profile = curves_.levels[static_cast<std::size_t>(level)].profile;
   std::vector<double> roughness;
   for (const EndZone& zone : zones_) {
-    for (const WeakWindow& window : zone.windows) {
+    for (const WeakWindow& window : zone.windows[static_cast<std::size_t>(level)]) {
       roughness.push_back(window.roughness(
           profile.zeta.segment(window.first, window.size()),
           profile.uncertainty.independent.segment(window.first, window.size()).max(kLeastNoise)));
@@ -123,7 +123,7 @@ CurvatureRows RestRows::rows(Index level) const {
   const std::vector<bool> passed = smooth_windows(level);
   std::size_t place = 0;
   for (std::size_t z = 0; z < zones_.size(); ++z) {
-    for (const WeakWindow& window : zones_[z].windows) {
+    for (const WeakWindow& window : zones_[z].windows[static_cast<std::size_t>(level)]) {
       if (!passed[place++]) continue;
       auto asked = ask(zones_[z], window, level);
       if (!asked) continue;

@@ -17,7 +17,7 @@ namespace manoscope::inversion {
 /// One end of the wall: where it is asked, and its curve where it does not feel that end.
 struct EndZone {
   FreeCurve curve;
-  std::vector<WeakWindow> windows;
+  std::vector<std::vector<WeakWindow>> windows;  ///< of each level, on the stations it has
 };
 
 /// Writes p_k - f(zeta) = b zeta'' for the windows of both ends, with the effects of every error.

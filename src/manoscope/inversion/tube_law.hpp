@@ -59,8 +59,8 @@ struct TubeLawAtRest {
 /// tension: on Foeppl-von Karman walls it is within 10 % the tension *across*, since tension
 /// near an end is that of its neighbourhood, not that of the deflection there.
 ///
-/// Uncertainty: pixels, planes and places of the maps, labels, gauge, interpolation; and the
-/// misfit.
+/// Uncertainty: pixels, planes and places of the maps, labels, gauge, interpolation; 0.3 % of b for
+/// f between noisy labels; and the misfit.
 ///
 /// @param curves  of stations along a channel.
 TubeLawAtRest tube_law_at_rest(const calibration::ConstitutiveCurves& curves, Length length,

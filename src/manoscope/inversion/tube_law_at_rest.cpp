@@ -18,55 +18,56 @@ constexpr double kStep = 0.1;                           // widths between window
 constexpr int kWindows = 7;                             // at each end
 constexpr double kLeastClear = 10.0;                    // curvature over its noise
 constexpr Index kFewestLevels = 4;                      // of a law b(zeta)
-constexpr double kLeastShare = 1e-6;  // of b, its uncertainty: exact data still have weights
+constexpr double kCurveShare = 3e-3;  // of b: what noise of the labels does to f between levels
 
-/// Stations at which every level counts.
-Flags1 usable_stations(const ConstitutiveCurves& curves) {
-  Flags1 usable = Flags1::Ones(curves.x.size());
-  for (const auto& level : curves.levels) {
-    usable = (level.profile.flags == 0).select(usable, FlagBits{0});
-  }
-  return usable;
+/// Stations that count, as make_weak_window() takes them.
+Flags1 usable_stations(const Profile& profile) {
+  return (profile.flags == 0).select(Flags1::Ones(profile.flags.size()), FlagBits{0});
 }
 
-/// Distance from the edge at which the wall is curved most, both ends together; 0 if no end shows.
-double place_of_most_curvature(const ConstitutiveCurves& curves, const Flags1& usable,
-                               double length, double width) {
+/// Distance from the edge at which the wall is curved most under the highest pressure, mean over
+/// the ends that show; 0 where neither does nearer than half a width.
+double place_of_most_curvature(const ConstitutiveCurves& curves, double length, double width) {
+  constexpr double kNearest = 0.5;  // widths
   Index top = 0;
   curves.level_pressure.maxCoeff(&top);
-  const Array1& zeta = curves.levels[static_cast<std::size_t>(top)].profile.zeta;
+  const Profile& profile = curves.levels[static_cast<std::size_t>(top)].profile;
+  const Flags1 usable = usable_stations(profile);
   const double half = window_half_width(curves.x, width);
   double most = 0.0, place = 0.0;
   for (double d = half; d < kSearchEnd * width; d += kSearchStep * width) {
-    double sum = 0.0;
+    double sum = 0.0, n = 0.0;
     for (const double centre : {d, length - d}) {
       if (const auto window = make_weak_window(curves.x, usable, centre, half)) {
-        sum += window->curvature_of(zeta);
+        sum += window->curvature_of(profile.zeta);
+        n += 1.0;
       }
     }
-    if (std::abs(sum) > most) {
-      most = std::abs(sum);
-      place = d;
-    }
+    if (n == 0.0 || std::abs(sum) <= n * most) continue;
+    most = std::abs(sum) / n;
+    place = d;
   }
-  return place;
+  return place < kNearest * width ? place : 0.0;
 }
 
-std::vector<EndZone> find_zones(const ConstitutiveCurves& curves, const Flags1& usable,
-                                Length length, Length width, double start) {
+std::vector<EndZone> find_zones(const ConstitutiveCurves& curves, Length length, Length width,
+                                double start) {
   const double half = window_half_width(curves.x, width.si());
   std::vector<EndZone> zones;
   for (const End end : {End::inlet, End::outlet}) {
     auto curve = FreeCurve::about(curves, length, width, end);
     if (!curve) continue;
-    EndZone zone{std::move(*curve), {}};
-    for (int i = 0; i < kWindows; ++i) {
-      const double d = start + i * kStep * width.si();
-      auto window =
-          make_weak_window(curves.x, usable, end == End::inlet ? d : length.si() - d, half);
-      if (window) zone.windows.push_back(std::move(*window));
+    EndZone& zone = zones.emplace_back(EndZone{std::move(*curve), {}});
+    for (const auto& level : curves.levels) {
+      const Flags1 usable = usable_stations(level.profile);
+      auto& windows = zone.windows.emplace_back();
+      for (int i = 0; i < kWindows; ++i) {
+        const double d = start + i * kStep * width.si();
+        auto window =
+            make_weak_window(curves.x, usable, end == End::inlet ? d : length.si() - d, half);
+        if (window) windows.push_back(std::move(*window));
+      }
     }
-    if (!zone.windows.empty()) zones.push_back(std::move(zone));
   }
   return zones;
 }
@@ -98,7 +99,7 @@ std::optional<KnownNumber> limit_of_small(const std::vector<std::optional<TubeLa
     const TubeLaw& law = *laws[static_cast<std::size_t>(k)];
     model.row(k) << 1.0, law.deflection * law.deflection;
     b[k] = law.b;
-    weight[k] = std::pow(std::max(law.uncertainty, kLeastShare * std::abs(law.b)), -2);
+    weight[k] = std::pow(law.uncertainty, -2);
   }
   // Squares of deflection that hardly differ tell no law.
   constexpr double kLeastRatio = 2.0;
@@ -115,7 +116,7 @@ std::optional<KnownNumber> limit_of_small(const std::vector<std::optional<TubeLa
     const auto& fit = fits[static_cast<std::size_t>(k)];
     shared += share[k] * fit.effect.head(n_shared);
     own += share[k] * share[k] * fit.effect.tail(fit.effect.size() - n_shared).squaredNorm();
-    misfit += std::abs(share[k]) * fit.misfit;
+    misfit += std::abs(share[k]) * std::hypot(fit.misfit, kCurveShare * fit.b);
   }
   const double left = ((b - model * found).array().square() * weight.array()).sum();
   const double inflation = std::max(1.0, left / static_cast<double>(n - 2));
@@ -135,13 +136,12 @@ TubeLawAtRest tube_law_at_rest(const ConstitutiveCurves& curves, Length length, 
                                const GaugeErrors& gauge) {
   TubeLawAtRest found;
   found.levels.resize(curves.levels.size());
-  const Flags1 usable = usable_stations(curves);
-  found.start = place_of_most_curvature(curves, usable, length.si(), width.si());
+  found.start = place_of_most_curvature(curves, length.si(), width.si());
   if (found.start == 0.0) {
     found.reason = "no end of the wall is in view";
     return found;
   }
-  const auto zones = find_zones(curves, usable, length, width, found.start);
+  const auto zones = find_zones(curves, length, width, found.start);
   if (zones.empty()) {
     found.reason = "the wall is too short, or does not rise with pressure throughout";
     return found;
@@ -154,7 +154,7 @@ TubeLawAtRest tube_law_at_rest(const ConstitutiveCurves& curves, Length length, 
     TubeLaw law = far_from_ends(zones, curves.level_pressure[static_cast<Index>(k)]);
     law.b = fit->b;
     law.misfit = fit->misfit;
-    law.uncertainty = fit->uncertainty();
+    law.uncertainty = std::hypot(fit->uncertainty(), kCurveShare * law.b);
     found.levels[k] = law;
     fits.push_back(std::move(*fit));
   }

@@ -168,10 +168,8 @@ TEST(TubeLawUnderFlow, FindsTheLawOfAWallThatObeysIt) {
     const Truth truth = lawful(wall, 20.0 * mL_per_min, 300.0);
     const auto found = under_flow(exact_curves(truth), truth.state, truth, 0.0);
     ASSERT_TRUE(found.law.has_value()) << found.reason;
-    // The uniform state is that of one pressure over a window, of standard deviation w/24: near an
-    // end with a healing length L its curvature leaves (w/24)^2/(2 L^2), 1.4 % at 0.25 mm and 4 %
-    // at 0.14 mm.
-    EXPECT_NEAR(found.law->b / b, 1.0, 0.05) << b;
+    // Over a window the pressure is taken as a straight line.
+    EXPECT_NEAR(found.law->b / b, 1.0, 0.02) << b;
     EXPECT_NEAR(found.resistance_factor, 1.0, 2e-3) << b;
   }
 }
@@ -197,10 +195,11 @@ TEST(TubeLaw, HasPullsOfWidthOneWhereAWallObeysIt) {
     if (found.law) flow.add((found.law->b - wall.b) / found.law->uncertainty);
   }
   EXPECT_GT(flow.n, 0.95 * kExperiments);
+  EXPECT_GT(flow.width(), 0.5);
   // Four standard errors of mean and width. On top: half a standard uncertainty of bias, as
-  // labels estimated together may have (fit_curves()) and as the windows leave of b (1 to 4 %);
-  // widths of half of one, since these walls follow the law of estimate_labels() exactly and their
-  // curves need none of the doubt of interpolation.
+  // labels estimated together may have (fit_curves()). Bars may be wider than the errors: these
+  // walls follow the law of estimate_labels() exactly, and their curves need none of the doubt of
+  // interpolation; at rest the 0.3 % for f are most of the bars where nothing else is off.
   const double mean = 4.0 / std::sqrt(kExperiments) + 0.5;
   const double width = 4.0 / std::sqrt(2.0 * kExperiments);
   const double alarms = 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / kExperiments);
@@ -208,7 +207,6 @@ TEST(TubeLaw, HasPullsOfWidthOneWhereAWallObeysIt) {
        {std::pair{&rest, "at rest"}, {&small, "small"}, {&flow, "under flow"}}) {
     EXPECT_NEAR(of->mean(), 0.0, mean) << name;
     EXPECT_LT(of->width(), 1.0 + width) << name;
-    EXPECT_GT(of->width(), 0.5 - width) << name;
     EXPECT_LT(of->beyond / of->n, alarms) << name;
   }
 }

@@ -85,6 +85,8 @@ struct FlowWindow {
   WeakWindow window;
   double pressure;  ///< Pa, mean of the station-by-station reading
   Array1 uniform;   ///< (n of the window) m, deflection under that pressure everywhere
+  /// 1/m: what the reading's own slope over the window adds to the curvature of the uniform states.
+  double slope_part = 0.0;
   std::vector<calibration::ConstitutiveCurve::LevelWeight> weights;
 };
 
@@ -104,14 +106,23 @@ std::vector<double> window_centres(double length, double width, double start) {
 std::optional<FlowWindow> ask(const ConstitutiveCurves& curves, const PressureReading& local,
                               WeakWindow window) {
   const double pressure = window.mean_of(local.pressure);
-  FlowWindow asked{std::move(window), pressure, {}, {}};
-  asked.uniform = Array1::Zero(asked.window.size());
-  for (Index i = 0; i < asked.uniform.size(); ++i) {
+  FlowWindow asked{std::move(window), pressure, {}, 0.0, {}};
+  const Index n = asked.window.size();
+  asked.uniform = Array1::Zero(n);
+  Array1 compliance = Array1::Zero(n);
+  for (Index i = 0; i < n; ++i) {
     if (asked.window.mean[i] == 0.0) continue;
     const auto& curve = curves.curves[static_cast<std::size_t>(asked.window.first + i)];
     if (!curve || pressure < curve->lowest() || pressure > curve->highest()) return std::nullopt;
     asked.uniform[i] = curve->zeta(pressure);
+    compliance[i] = curve->slope(pressure);
   }
+  const auto reading = local.pressure.segment(asked.window.first, n);
+  const Array1 lever = local.x.segment(asked.window.first, n) - asked.window.centre;
+  // Slope of r by the line through the window, per half width: phi's mean of t^2 is 1/9.
+  const double spread = (asked.window.mean * lever.square()).sum();
+  const double slope = (asked.window.mean * lever * (reading - pressure)).sum() / spread;
+  asked.slope_part = slope * 3.0 * std::sqrt(spread) * (asked.window.skew * compliance).sum();
   const auto middle = static_cast<std::size_t>(asked.window.first + asked.window.size() / 2);
   if (!curves.curves[middle]) return std::nullopt;
   asked.weights = curves.curves[middle]->level_weights(pressure);
@@ -213,7 +224,8 @@ CurvatureRows write_rows(const ConstitutiveCurves& curves, const Profile& state,
     const FlowWindow& asked = windows[static_cast<std::size_t>(m)];
     const WeakWindow& window = asked.window;
     rows.target[m] = asked.pressure;
-    rows.curvature[m] = (window.curvature * asked.uniform).sum() - window.curvature_of(state.zeta);
+    rows.curvature[m] = (window.curvature * asked.uniform).sum() + asked.slope_part -
+                        window.curvature_of(state.zeta);
     for (Index j = 0; j < shapes.shape.cols(); ++j) {
       rows.nuisance(m, j) = window.mean_of(shapes.shape.col(j).array());
     }

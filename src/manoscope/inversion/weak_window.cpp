@@ -1,5 +1,6 @@
 #include "manoscope/inversion/weak_window.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -11,14 +12,15 @@ namespace {
 
 constexpr Index kFewestStations = 9;
 constexpr Index kSmooth = 6;   // polynomials
-constexpr double kOpen = 0.3;  // half widths between neighbouring stations that count
+constexpr double kOpen = 0.5;  // half widths between neighbouring stations that count
 
-/// Takes from weights what they see of a straight line over `t`; unusable stations keep weight 0.
-void blind_to_lines(const Array1& t, const Array1& used, Array1& weights) {
-  const double n = used.sum(), st = (used * t).sum(), stt = (used * t.square()).sum();
-  const double s = weights.sum(), ts = (weights * t).sum();
-  const double determinant = n * stt - st * st;
-  weights -= used * ((s * stt - ts * st) / determinant + (ts * n - s * st) / determinant * t);
+using Moments = Eigen::Matrix<double, kSmooth, 1>;
+
+/// Weights changed by as little as makes their sums with 1, t ... t^5 those moments.
+void meet_moments(const Matrix& polynomials, const Matrix& triangle, const Moments& moments,
+                  Array1& weights) {
+  const Eigen::VectorXd wanted = triangle.transpose().triangularView<Eigen::Lower>().solve(moments);
+  weights += (polynomials * (wanted - polynomials.transpose() * weights.matrix())).array();
 }
 
 }  // namespace
@@ -36,7 +38,8 @@ std::optional<WeakWindow> make_weak_window(const Array1& x, const Flags1& usable
   }
   if (static_cast<Index>(used.size()) < kFewestStations) return std::nullopt;
   const Array1 t = (x.segment(first, n) - centre) / half_width;
-  WeakWindow window{centre, first, Array1::Zero(n), Array1::Zero(n), Matrix(n, kSmooth)};
+  WeakWindow window{centre,          first,           Array1::Zero(n),
+                    Array1::Zero(n), Array1::Zero(n), Matrix(n, kSmooth)};
   for (std::size_t j = 0; j < used.size(); ++j) {
     const double at = t[used[j]];
     const double before = j > 0 ? at - t[used[j - 1]] : at + 1.0;
@@ -45,18 +48,28 @@ std::optional<WeakWindow> make_weak_window(const Array1& x, const Flags1& usable
     const double share = 0.5 * (before + behind), inside = 1.0 - at * at;
     window.mean[used[j]] = share * std::pow(inside, 3);
     window.curvature[used[j]] = share * (24.0 * at * at * inside - 6.0 * inside * inside);
+    window.skew[used[j]] = at * window.curvature[used[j]] - 12.0 * share * at * inside * inside;
   }
   window.mean /= window.mean.sum();
-  blind_to_lines(t, (here != 0).cast<double>(), window.curvature);
-  const double of_parabola = 0.5 * (window.curvature * t.square()).sum();
-  window.curvature /= of_parabola * half_width * half_width;
+  window.curvature *= 35.0 / 32.0;  // over the integral of phi
+  window.skew *= 35.0 / 32.0;
+  Matrix powers(n, kSmooth);
   for (Index j = 0; j < kSmooth; ++j) {
-    Eigen::VectorXd column = ((here != 0).cast<double>() * t.pow(static_cast<double>(j))).matrix();
-    for (int twice = 0; twice < 2; ++twice) {
-      column -= window.smooth.leftCols(j) * (window.smooth.leftCols(j).transpose() * column);
-    }
-    window.smooth.col(j) = column.normalized();
+    powers.col(j) = ((here != 0).cast<double>() * t.pow(static_cast<double>(j))).matrix();
   }
+  const Eigen::HouseholderQR<Matrix> factors(powers);
+  window.smooth = factors.householderQ() * Matrix::Identity(n, kSmooth);
+  const Matrix triangle =
+      factors.matrixQR().topRows(kSmooth).triangularView<Eigen::Upper>().toDenseMatrix();
+  // Moments of phi over its integral: int t^2 is 1/9, int t^4 is 1/33 of it.
+  const Moments of_mean(1.0, 0.0, 1.0 / 9.0, 0.0, 1.0 / 33.0, 0.0);
+  const Moments of_curvature(0.0, 0.0, 2.0, 0.0, 12.0 / 9.0, 0.0);
+  const Moments of_skew(0.0, 0.0, 0.0, 6.0 / 9.0, 0.0, 20.0 / 33.0);
+  meet_moments(window.smooth, triangle, of_mean, window.mean);
+  meet_moments(window.smooth, triangle, of_skew, window.skew);
+  meet_moments(window.smooth, triangle, of_curvature, window.curvature);
+  window.curvature /= half_width * half_width;
+  window.skew /= half_width * half_width;
   return window;
 }
 

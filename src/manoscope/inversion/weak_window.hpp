@@ -13,14 +13,15 @@ namespace manoscope::inversion {
 ///
 /// The weighted mean of a second derivative is that of the values themselves with the weight phi'':
 /// phi and phi' vanish at both ends, so that int phi f'' = int phi'' f, and noise is averaged, not
-/// differentiated. On the stations phi'' is brought to see no straight line at all and a parabola
-/// exactly, whatever their spacing; of sin(k x) both means are those of a stretch of standard
-/// deviation half_width/3.
+/// differentiated. On the stations all weights are brought to the moments of phi and phi'' up to
+/// the fifth, whatever the spacing: of a polynomial of that degree the means are exact. They
+/// average over a stretch of standard deviation half_width/3.
 struct WeakWindow {
   double centre = 0.0;  ///< m
   Index first = 0;      ///< station of the first weight
   Array1 mean;          ///< (n) weights, sum 1
   Array1 curvature;     ///< (n) weights, 1/m2
+  Array1 skew;          ///< (n) weights of the mean of t f'', 1/m2
   Matrix smooth;        ///< (n, 6) orthonormal polynomials over the usable stations
 
   Index size() const { return mean.size(); }
@@ -40,7 +41,7 @@ struct WeakWindow {
 };
 
 /// The window about a centre; none unless at least 9 usable stations lie in it, no gap between them
-/// or at its ends longer than 0.3 half widths. Unusable stations have the weight 0.
+/// or at its ends longer than half of half_width. Unusable stations have the weight 0.
 ///
 /// @param x       (n_x) m, ascending.
 /// @param usable  (n_x) 0 where a station has no value.

@@ -33,9 +33,9 @@ TEST(WeakWindow, MeansOfASineAndOfItsCurvatureAgree) {
   for (const double wavelength : {2e-3, 1e-3, 0.6e-3}) {
     const double k = 2.0 * std::numbers::pi / wavelength;
     const Array1 wave = (k * (x - kCentre)).cos();
-    // phi'' falls to 0 at the ends with a slope: sums over stations err as the square of pitch over
-    // half width, 0.6 %, of which the scale set on a parabola takes the most.
-    EXPECT_NEAR(window->curvature_of(wave) / (-k * k * window->mean_of(wave)), 1.0, 3e-3)
+    // Exact to the fifth degree: what is left of a cosine is of sixth, (k half)^6/720, 0.012 at the
+    // shortest, of which the moments of phi leave a twentieth.
+    EXPECT_NEAR(window->curvature_of(wave) / (-k * k * window->mean_of(wave)), 1.0, 1e-3)
         << wavelength;
     // A stretch of standard deviation half_width/3: exp(-(k sigma)^2/2) but for the tails.
     EXPECT_NEAR(window->mean_of(wave), std::exp(-std::pow(k * kHalf / 3.0, 2) / 2.0), 0.02);
@@ -52,7 +52,14 @@ TEST(WeakWindow, LeavesOutUnusableStationsAndStaysExact) {
     EXPECT_EQ(window->mean[hole - window->first], 0.0);
     EXPECT_EQ(window->curvature[hole - window->first], 0.0);
   }
-  EXPECT_NEAR(window->curvature_of(2.0 - 40.0 * x + 3.5 * x.square()), 7.0, 1e-8);
+  EXPECT_NEAR(window->curvature_of(2.0 - 40.0 * x + 3.5 * x.square()), 7.0, 1e-5);
+  // Means of the second derivative, 60 t^3 and 12 t^2, of fifth and fourth degree.
+  const Array1 t = (x - kCentre) / kHalf;
+  EXPECT_NEAR(window->curvature_of(3.0 * t.pow(5.0)) * kHalf * kHalf, 0.0, 1e-10);
+  EXPECT_NEAR(window->curvature_of(t.pow(4.0)) * kHalf * kHalf, 12.0 / 9.0, 1e-10);
+  // Mean of t times it: 6 t^2 of a third power.
+  const Array1 cubic = t.segment(window->first, window->size()).pow(3.0);
+  EXPECT_NEAR((window->skew * cubic).sum() * kHalf * kHalf, 6.0 / 9.0, 1e-10);
 }
 
 TEST(WeakWindow, IsNoneWhereItsStationsAreMissing) {
@@ -61,7 +68,7 @@ TEST(WeakWindow, IsNoneWhereItsStationsAreMissing) {
   EXPECT_FALSE(make_weak_window(x, all, 0.1e-3, kHalf).has_value());   // reaches beyond the view
   EXPECT_FALSE(make_weak_window(x, all, kCentre, 50e-6).has_value());  // six stations
   Flags1 hole = all;
-  hole.segment(60, 5).setZero();  // 96 um without a station, 0.48 half widths
+  hole.segment(60, 6).setZero();  // 112 um without a station, 0.56 half widths
   EXPECT_FALSE(make_weak_window(x, hole, kCentre, kHalf).has_value());
 }
 
