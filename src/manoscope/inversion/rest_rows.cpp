@@ -29,7 +29,7 @@ RestRows::RestRows(const ConstitutiveCurves& curves, const std::vector<EndZone>&
     doubt_column_.push_back(next + n_levels);
     next += n_levels + static_cast<Index>(zone.curve.knots().size()) - 1;
     auto& effects = far_.emplace_back();
-    const double n = static_cast<double>(zone.curve.stations().size());
+    const auto n = static_cast<double>(zone.curve.stations().size());
     for (Index k = 0; k < n_levels; ++k) {
       const Uncertainty& of = curves.levels[static_cast<std::size_t>(k)].profile.uncertainty;
       auto& list = effects.emplace_back();

@@ -289,10 +289,14 @@ TEST(TubeLawUnderFlow, SaysWhyThereIsNone) {
   };
   Profile lost = truth.state;
   lost.flags.setConstant(StationFlag::no_data);
-  EXPECT_EQ(reason(lost, truth.channel, truth.flow_rate), "too few stations have a reading");
-  flow::Channel wide = truth.channel;
-  wide.height = -1.0 * mm;  // a gap that is none
-  EXPECT_NE(reason(truth.state, wide, truth.flow_rate), "");
+  EXPECT_EQ(reason(lost, truth.channel, truth.flow_rate),
+            "too few stations near the ends have a reading");
+  flow::Channel broad = truth.channel;
+  broad.width = 2.1 * mm;  // less than four widths long
+  EXPECT_NE(reason(truth.state, broad, truth.flow_rate).find("too short"), std::string::npos);
+  flow::Channel closed = truth.channel;
+  closed.height = -1.0 * mm;  // a gap that is none
+  EXPECT_NE(reason(truth.state, closed, truth.flow_rate), "");
 }
 
 }  // namespace

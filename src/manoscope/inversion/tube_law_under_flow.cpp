@@ -20,6 +20,7 @@ using calibration::ConstitutiveCurves;
 
 constexpr double kEndStep = 0.1, kEndReach = 1.3;     // widths: windows near the ends
 constexpr double kInnerStep = 0.4, kInnerFrom = 1.5;  // widths: windows inside
+constexpr std::size_t kFewestWindows = 12;
 constexpr double kLeastClear = 4.0;   // curvature over its noise: attenuates b by 6 %
 constexpr double kLeastNoise = 1e-9;  // m, of a deflection: what is smoother counts as smooth
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -252,9 +253,10 @@ bool place_law(const ConstitutiveCurves& curves, const flow::Channel& channel,
       weights += weight;
     }
   }
+  if (!(weights > 0.0)) return false;
   law.deflection /= weights;
   law.stiffness /= weights;
-  return weights > 0.0;
+  return true;
 }
 
 }  // namespace
@@ -265,8 +267,8 @@ TubeLawUnderFlow tube_law_under_flow(const ConstitutiveCurves& curves, const Pro
   TubeLawUnderFlow found;
   const auto windows =
       ask_all(curves, local, state, channel.length.si(), channel.width.si(), start);
-  if (windows.empty()) {
-    found.reason = "too few stations have a reading";
+  if (windows.size() < kFewestWindows) {
+    found.reason = "too few stations near the ends have a reading";
     return found;
   }
   try {
@@ -274,7 +276,7 @@ TubeLawUnderFlow tube_law_under_flow(const ConstitutiveCurves& curves, const Pro
     const CurvatureRows rows = write_rows(curves, state, local, shapes, windows);
     const auto fit = fit_curvature(rows);
     if (!fit) {
-      found.reason = "too few stations have a reading";
+      found.reason = "the run curves the wall by no more than noise";
       return found;
     }
     found.resistance_factor = fit->size[1];
