@@ -99,7 +99,8 @@ Truth lawful(const LineWall& wall, FlowRate flow_rate, double outlet) {
 }
 
 /// A wall that answers to the pressure at x alone, softer towards its middle: b = 0.
-Truth local(const LocalWall& wall, FlowRate flow_rate, double outlet) {
+Truth local(const LocalWall& wall, FlowRate flow_rate, double outlet,
+            double momentum_factor = 1.2) {
   Truth truth{{Length::from_si(wall.length), 1.7 * mm, 175.0 * um},
               flow_rate,
               test::log_spaced(16, 200.0, 15e3),
@@ -119,8 +120,8 @@ Truth local(const LocalWall& wall, FlowRate flow_rate, double outlet) {
   for (const double p : truth.pressures) {
     truth.levels.push_back(profile(Array1::Constant(x.size(), p)));
   }
-  truth.state = profile(
-      test_support::flow_pressure(truth.channel, kWater, flow_rate, x, outlet, deflections));
+  truth.state = profile(test_support::flow_pressure(truth.channel, kWater, flow_rate, x, outlet,
+                                                    deflections, momentum_factor));
   return truth;
 }
 
@@ -235,6 +236,25 @@ TEST(TubeLawUnderFlow, SeldomSeesTensionInAWallThatAnswersToThePressureAtXAlone)
   EXPECT_NEAR(flow.width(), 1.0, 4.0 / std::sqrt(2.0 * kExperiments) + 0.05);
   // The wall's own ends reach over 0.5 mm: what is seen of a healing length stays far below.
   EXPECT_LT(std::sqrt(largest), 0.3e-3);
+}
+
+TEST(TubeLawUnderFlow, StaysQuietWhenTheMomentumOfTheFlowIsAnother) {
+  // beta of real sections is 1.22 to 1.34, that of a flat profile 1; 1.2 +- 0.1 is assumed.
+  constexpr int kExperiments = 30;
+  for (const double beta : {1.05, 1.35}) {
+    const Truth truth = local(LocalWall{}, 30.0 * mL_per_min, 400.0, beta);
+    Statistics flow;
+    for (int i = 0; i < kExperiments; ++i) {
+      RandomStream random(9, "momentum", static_cast<std::uint64_t>(i));
+      const ConstitutiveCurves curves = calibrate(truth.pressures, truth.levels, random);
+      const auto found = under_flow(curves, noisy(truth.state, "f", random), truth, 0.0);
+      if (found.law) flow.add(found.law->b / found.law->uncertainty);
+    }
+    EXPECT_GT(flow.n, 0.8 * kExperiments) << beta;
+    // Off by 1.5 of its standard uncertainties, beta may move b by as many of that part of its own.
+    EXPECT_NEAR(flow.mean(), 0.0, 1.0) << beta;
+    EXPECT_LT(flow.beyond / flow.n, 0.05 + 4.0 * std::sqrt(0.05 * 0.95 / kExperiments)) << beta;
+  }
 }
 
 TEST(TubeLawAtRest, TakesAWallThatIsStifferNearItsEndsForOneUnderTension) {
