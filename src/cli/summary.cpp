@@ -101,6 +101,7 @@ std::string summary_text(const results::Measurement& m) {
     text +=
         fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
   }
+  if (!m.tube_law.empty()) text += "tube law: " + m.tube_law + '\n';
   return text;
 }
 
@@ -129,7 +130,9 @@ std::string summary_json(const results::Measurement& m, const std::filesystem::p
                     {"resistance_drop_uncertainty_Pa", number(m.resistance_drop_uncertainty[r])},
                     {"transducer_drop_Pa", number(m.transducer_drop[r])},
                     {"parasitic_drop_Pa", number(m.parasitic_drop[r])},
-                    {"en_number", number(m.en_number[r])}});
+                    {"en_number", number(m.en_number[r])},
+                    {"tube_law_b_N_m", number(m.tube_law_b[r])},
+                    {"tube_law_b_uncertainty_N_m", number(m.tube_law_b_uncertainty[r])}});
   }
   return json{{"output", folder.string()}, {"runs", runs}, {"warnings", m.warnings}}.dump(2) + "\n";
 }

@@ -77,6 +77,16 @@ void add_calibration(Measurement& m, const ExampleSize& size) {
   }
   m.static_deflection_uncertainty = Array2::Constant(n_l, size.n_x, 8e-9);
   m.crest_deflection_uncertainty = Array1::Constant(n_l, 1e-8);
+  m.stiffness = Array2::Constant(n_l, size.n_x, 3e8);
+  m.stiffness_uncertainty = Array2::Constant(n_l, size.n_x, 2e6);
+  m.tube_law_at_rest_deflection = Array1::LinSpaced(n_l, 0.0, 40e-6);
+  m.tube_law_at_rest_a = Array1::Constant(n_l, 4e8);
+  m.tube_law_at_rest_b = -2.0 - 1e11 * m.tube_law_at_rest_deflection.square();
+  m.tube_law_at_rest_b_uncertainty = Array1::Constant(n_l, 3.0);
+  m.tube_law_at_rest_misfit = Array1::Constant(n_l, 2.5);
+  m.tube_law_at_rest_b_small = -2.0;
+  m.tube_law_at_rest_b_small_uncertainty = 0.5;
+  m.tube_law = "b = -5.8 ± 1.2 N/m at 0.5 um, differs from 0 by 9.7 sigma";
 }
 
 void add_empty_runs(Measurement& m, Index n_r, Index n_x) {
@@ -89,7 +99,9 @@ void add_empty_runs(Measurement& m, Index n_r, Index n_x) {
   for (Array1* array :
        {&m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
         &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
-        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength, &m.pressure_band_factor}) {
+        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength, &m.pressure_band_factor,
+        &m.tube_law_deflection, &m.tube_law_a, &m.tube_law_b, &m.tube_law_b_uncertainty,
+        &m.tube_law_misfit, &m.healing_length}) {
     *array = nan1(n_r);
   }
   m.pressure_flags = Flags2::Zero(n_r, n_x);
@@ -212,6 +224,12 @@ void add_run(Measurement& m, Index run, const ExampleSize& size) {
   if (run != 2) m.transducer_drop(run) = flow.drop + m.parasitic_drop(run) + 25.0 * noise.normal();
   m.half_response_wavelength(run) = 1.1e-3;
   m.pressure_band_factor(run) = 2.9;
+  m.tube_law_deflection(run) = 10e-6 + 1e-6 * static_cast<double>(run);
+  m.tube_law_a(run) = 1e8;
+  m.tube_law_b(run) = -6.25;
+  m.tube_law_b_uncertainty(run) = 1.1;
+  m.tube_law_misfit(run) = 0.9;
+  m.healing_length(run) = 0.25e-3;
   m.en_number(run) =
       std::abs(m.extracted_drop(run) - m.resistance_drop(run)) /
       (2.0 * std::hypot(m.extracted_drop_uncertainty(run), m.resistance_drop_uncertainty(run)));

@@ -10,6 +10,7 @@
 #include "manoscope/inversion/intersections.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
+#include "manoscope/inversion/tube_law.hpp"
 #include "manoscope/pipeline/stages.hpp"
 #include "manoscope/results/measurement.hpp"
 #include "manoscope/validation/drop_agreement.hpp"
@@ -32,6 +33,7 @@ struct RunFindings {
   Array1 resistance_pressure;                          ///< (n_x) Pa, NaN without a test section
   double channel_resistance_drop = kMissing;           ///< Pa
   double reynolds = kMissing;
+  inversion::TubeLawUnderFlow tube_law;
   std::string no_comparison;  ///< why the flow could not be compared; empty if it was
   std::optional<Pressure> parasitic_drop;
 };

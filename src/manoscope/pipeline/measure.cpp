@@ -16,6 +16,7 @@
 #include "manoscope/inversion/simultaneous_band.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 #include "manoscope/pipeline/stages.hpp"
+#include "manoscope/pipeline/tube_law_findings.hpp"
 
 namespace manoscope::pipeline {
 namespace {
@@ -28,6 +29,11 @@ flow::Channel channel_of(const Experiment& experiment) {
 
 flow::Fluid fluid_of(const Experiment& experiment) {
   return {experiment.fluid.viscosity, experiment.fluid.density};
+}
+
+inversion::GaugeErrors gauge_of(const Experiment& experiment) {
+  return {experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
+          experiment.instrument.pressure_zero_uncertainty.value_or(Pressure{})};
 }
 
 std::optional<Pressure> parasitic_drop(const Experiment& experiment, FlowRate flow_rate) {
@@ -109,12 +115,10 @@ void tell_unsettled(const std::vector<FlowRun>& runs, const std::vector<RunFindi
 }
 
 RunFindings read_run(const Experiment& experiment, const calibration::ConstitutiveCurves& curves,
-                     const std::optional<inversion::NonlocalWall>& wall, const FlowRun& run,
-                     const MeasureOptions& options) {
+                     const std::optional<inversion::NonlocalWall>& wall, double wall_start,
+                     const FlowRun& run, const MeasureOptions& options) {
   const flow::Channel channel = channel_of(experiment);
-  const inversion::GaugeErrors gauge{
-      experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
-      experiment.instrument.pressure_zero_uncertainty.value_or(Pressure{})};
+  const inversion::GaugeErrors gauge = gauge_of(experiment);
 
   RunFindings found;
   found.reading = inversion::read_pressure(curves, run.profile, gauge, options.reading);
@@ -122,6 +126,8 @@ RunFindings read_run(const Experiment& experiment, const calibration::Constituti
   found.section =
       inversion::find_test_section(found.reading, channel.length, channel.width, options.section);
   inversion::flag_outside(found.reading, found.section);
+  found.tube_law = inversion::tube_law_under_flow(curves, run.profile, found.reading, channel,
+                                                  fluid_of(experiment), run.flow_rate, wall_start);
   std::optional<inversion::NonlocalReading> nonlocal;
   if (wall) {
     nonlocal =
@@ -238,12 +244,14 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
     curves = calibration::fit_curves(levels, options.curves, &wall->uniform);
     inversion::update_offset(*wall, curves);
   }
+  const auto at_rest = inversion::tube_law_at_rest(curves, experiment.channel.length,
+                                                   experiment.channel.width, gauge_of(experiment));
   std::vector<RunFindings> findings(runs.size());
   std::atomic<int> done{0};
   parallel_for(static_cast<Index>(runs.size()), n_threads, [&](Index r) {
     monitor.checkpoint();
     const auto at = static_cast<std::size_t>(r);
-    findings[at] = read_run(experiment, curves, wall, runs[at], options);
+    findings[at] = read_run(experiment, curves, wall, at_rest.start, runs[at], options);
     monitor.report("reading p(x)", static_cast<double>(++done) / static_cast<double>(runs.size()));
   });
   results::Measurement measurement;
@@ -254,6 +262,8 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   measurement.flow_rate_uncertainty =
       measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
   store_map_conditions(reduced, measurement);
+  store_tube_law(at_rest, inversion::station_stiffness(curves, gauge_of(experiment)), findings,
+                 measurement);
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
                                      doubtful_levels(curves, options.curves), runs, findings);
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&

@@ -130,6 +130,9 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
   if (const auto budget = budget_table(m); !budget.empty()) {
     page += "<h2 id=\"budget\">Where the uncertainty comes from</h2>\n" + budget;
   }
+  if (const auto law = tube_law_table(m); !law.empty()) {
+    page += "<h2 id=\"tube-law\">Tube law</h2>\n" + law;
+  }
   page += "<h2 id=\"maps\">Maps</h2>\n" + maps_table(m);
   page += "<h2 id=\"flags\">Flags</h2>\n" + flags_table(m);
   page += opening_part();

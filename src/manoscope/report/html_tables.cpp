@@ -132,6 +132,7 @@ std::string facts_list(const Measurement& m) {
                  fmt::format("{}, {} apart", m.x.size(), with_unit(spacing, 3, length_unit)));
   }
   list += fact("Maps", fmt::format("{}", m.map.size()));
+  if (!m.tube_law.empty()) list += fact("Tube law", escape_html(m.tube_law));
   if (!m.reading.empty() && !m.run.empty()) list += fact("p(x) read", escape_html(m.reading));
   return list + "</dl>\n";
 }
@@ -214,6 +215,45 @@ std::string budget_table(const Measurement& m) {
       "Standard uncertainty u(p) of the pressure near the middle of the test section, and the "
       "share of each source in its square.",
       head, body);
+}
+
+std::string tube_law_table(const Measurement& m) {
+  const auto row = [](const std::string& label, double zeta, double a, double b, double u_b,
+                      double misfit) {
+    const double length = std::isless(b, 0.0) ? std::sqrt(-b / a) : std::nan("");
+    return "<tr>" + row_head(label) + cell(number_text(1e6 * zeta, 3)) +
+           cell(number_text(1e-6 * a, 3)) +
+           cell(number_text_with_uncertainty(b, kExpansion * u_b)) + cell(number_text(misfit, 2)) +
+           cell(number_text(std::abs(b) / u_b, 2)) + cell(number_text(1e3 * length, 2)) + "</tr>\n";
+  };
+  std::string body;
+  for (Index r = 0; r < m.tube_law_b.size(); ++r) {
+    if (!std::isfinite(m.tube_law_b[r])) continue;
+    body += row(m.run[static_cast<std::size_t>(r)], m.tube_law_deflection[r], m.tube_law_a[r],
+                m.tube_law_b[r], m.tube_law_b_uncertainty[r], m.tube_law_misfit[r]);
+  }
+  for (Index k = 0; k < m.tube_law_at_rest_b.size(); ++k) {
+    if (!std::isfinite(m.tube_law_at_rest_b[k])) continue;
+    body += row(fmt::format("at rest, {}", with_unit(m.level_pressure[k], 4, pressure_unit)),
+                m.tube_law_at_rest_deflection[k], m.tube_law_at_rest_a[k], m.tube_law_at_rest_b[k],
+                m.tube_law_at_rest_b_uncertainty[k], m.tube_law_at_rest_misfit[k]);
+  }
+  if (body.empty()) return {};
+  return table(
+      fmt::format(
+          "The tube law <i>p</i> = <i>f</i>(<i>ζ</i>) + <i>b</i> <i>ζ</i>″, <i>a</i> = "
+          "<i>f</i>′, about the deflection ζ: does the deflection depend on the pressure there "
+          "alone (<i>b</i> = 0)? <i>b</i> ± expanded uncertainty (k = {:.0f}), misfit included: by "
+          "how much <i>b</i> differs from place to place. From flow runs: what station-by-station "
+          "readings leave near the ends against the momentum balance of the measured gap. At rest: "
+          "from the wall's ends at uniform pressure, if the wall is the same along x; of a "
+          "stretched "
+          "wall that is not the axial tension but nearer to the tension across.",
+          kExpansion),
+      column_head("State") + column_head("<i>ζ</i> (µm)") + column_head("<i>a</i> (Pa/µm)") +
+          column_head("<i>b</i> (N/m)") + column_head("Misfit (N/m)") +
+          column_head("|<i>b</i>|/<i>u</i>(<i>b</i>)") + column_head("√(−<i>b</i>/<i>a</i>) (mm)"),
+      body, true);
 }
 
 std::string maps_table(const Measurement& m) {

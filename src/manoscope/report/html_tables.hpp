@@ -15,6 +15,8 @@ std::string facts_list(const results::Measurement& measurement);
 std::string runs_table(const results::Measurement& measurement);
 /// Share of each source in the variance of p at the middle of the test section, one row a run.
 std::string budget_table(const results::Measurement& measurement);
+/// a and b of the tube law, one row a run and one a level that has them.
+std::string tube_law_table(const results::Measurement& measurement);
 /// Tilt, noise, missing pixels and spikes, one row a map.
 std::string maps_table(const results::Measurement& measurement);
 /// The reading flags: name, meaning, and at how many stations each stands.

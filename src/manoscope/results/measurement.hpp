@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct Measurement {
   std::string inputs;                 ///< one "name  sha256" a line
   std::string settings;               ///< one "name = value" a line: every option in force
   std::string reading;                ///< how p(x) was read: by which wall, or why by none
+  std::string tube_law;               ///< b of the tube law, or why there is none
   std::vector<std::string> warnings;  ///< doubts worth a person's time, in words
 
   // Scalars.
@@ -73,6 +75,20 @@ struct Measurement {
   Array1 reynolds;                         ///< (n_r)
   Array1 transducer_drop, parasitic_drop;  ///< (n_r) Pa
   Array1 en_number;                        ///< (n_r) |dp_e - QR| / U of the difference
+
+  // The tube law p = f(zeta) + b zeta'', a = f'. NaN: not determined.
+  Array2 stiffness, stiffness_uncertainty;    ///< (n_l, n_x) Pa m-1, dp/dzeta at uniform p
+  Array1 tube_law_deflection;                 ///< (n_r) m, where a and b belong
+  Array1 tube_law_a;                          ///< (n_r) Pa m-1
+  Array1 tube_law_b, tube_law_b_uncertainty;  ///< (n_r) N m-1, standard
+  Array1 tube_law_misfit;                     ///< (n_r) N m-1, of it, from place to place
+  Array1 healing_length;                      ///< (n_r) m, sqrt(-b/a)
+  Array1 tube_law_at_rest_deflection;         ///< (n_l) m, from the ends of the wall
+  Array1 tube_law_at_rest_a;                  ///< (n_l) Pa m-1
+  Array1 tube_law_at_rest_b, tube_law_at_rest_b_uncertainty;  ///< (n_l) N m-1, standard
+  Array1 tube_law_at_rest_misfit;                             ///< (n_l) N m-1
+  double tube_law_at_rest_b_small = std::numeric_limits<double>::quiet_NaN();  ///< N m-1
+  double tube_law_at_rest_b_small_uncertainty = std::numeric_limits<double>::quiet_NaN();
 
   // What each map was like.
   std::vector<std::string> map;             ///< (n_m) file names
