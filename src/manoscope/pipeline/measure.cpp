@@ -252,8 +252,12 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   measurement.flow_rate_uncertainty =
       measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
   store_map_conditions(reduced, measurement);
+  const inversion::LeftOut left_out = inversion::leave_one_out(
+      curves, options.curves,
+      inversion::wanted_stretch(experiment.channel.length, experiment.channel.width,
+                                options.section));
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
-                                     doubtful_levels(curves, options.curves), runs, findings);
+                                     doubtful_levels(curves, left_out), runs, findings);
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&
       experiment.wall->thickness) {
     measurement.warnings.push_back(fmt::format(
