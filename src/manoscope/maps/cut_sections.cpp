@@ -15,7 +15,9 @@ constexpr Index kMostBins = 16, kFewestBins = 8;
 constexpr double kFewestPixels = 3.0;                       // a bin
 constexpr double kMarginShare = 0.02, kMarginPixels = 1.5;  // left out at either side
 constexpr double kLongestGap = 0.1, kGapPixels = 2.5;       // widths; at least
-constexpr double kWhole = 0.999;                            // of a cell, bridged pixels included
+constexpr double kSpike = 10.0;      // deviations of the noise: eight of a pixel against two others
+constexpr double kRoundOff = 1e-12;  // m
+constexpr double kWhole = 0.999;     // of a cell, bridged pixels included
 
 /// Where stretches and bins lie.
 struct Layout {
@@ -59,8 +61,9 @@ struct RowSums {
 
 class RowReader {
  public:
-  RowReader(const DeflectionMap& map, const Layout& layout, double longest_gap)
-      : map_(map), layout_(layout), longest_(longest_gap), n_(layout.ends.back()) {
+  RowReader(const DeflectionMap& map, const Layout& layout, double longest_gap, double spike)
+      : map_(map), layout_(layout), longest_(longest_gap), spike_(spike), n_(layout.ends.back()) {
+    bad_.resize(static_cast<std::size_t>(n_));
     sums_.height = sums_.count = sums_.gain = sums_.sag = Array1::Zero(layout.n_x());
     for (Index j = 0; j < layout.n_x(); ++j) {
       stretch_.insert(stretch_.end(),
@@ -70,7 +73,8 @@ class RowReader {
 
   const RowSums& read(Index iz) {
     const double* const height = &map_.zeta()(iz, layout_.first_column);
-    const FlagBits* const flags = &map_.flags()(iz, layout_.first_column);
+    find_bad(height, &map_.flags()(iz, layout_.first_column));
+    const FlagBits* const flags = bad_.data();
     for (Index j = 0; j < layout_.n_x(); ++j) {
       double sum = 0.0, count = 0.0;
       for (Index i = layout_.begin(j); i < layout_.begin(j + 1); ++i) {
@@ -93,6 +97,32 @@ class RowReader {
   }
 
  private:
+  /// Flagged pixels, and those that stand off the straight line between the next good ones in their
+  /// row, and between the second next, by more than these two lie apart and `spike_`: along the
+  /// flow the wall is smooth.
+  void find_bad(const double* height, const FlagBits* flags) {
+    std::copy(flags, flags + n_, bad_.begin());
+    good_.clear();
+    for (Index i = 0; i < n_; ++i) {
+      if (flags[i] == 0) good_.push_back(i);
+    }
+    for (std::size_t k = 2; k + 2 < good_.size(); ++k) {
+      const Index i = good_[k];
+      const auto line = [&](Index from, Index to) {
+        const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
+        return height[from] + share * (height[to] - height[from]);
+      };
+      const double near = line(good_[k - 1], good_[k + 1]);
+      const double off = std::abs(height[i] - near);
+      if (off <= spike_) continue;
+      const double far = line(good_[k - 2], good_[k + 2]);
+      const double bound = spike_ + std::abs(near - far);
+      if (off > bound && std::abs(height[i] - far) > bound) {
+        bad_[static_cast<std::size_t>(i)] = PixelFlag::spike;
+      }
+    }
+  }
+
   /// Pixels between two good ones take the straight line between them.
   void bridge(const double* height, Index before, Index after) {
     if (before < 0 || after >= n_) return;
@@ -112,8 +142,10 @@ class RowReader {
 
   const DeflectionMap& map_;
   const Layout& layout_;
-  double longest_;
+  double longest_, spike_;
   Index n_;
+  std::vector<FlagBits> bad_;  ///< of each column
+  std::vector<Index> good_;    ///< columns
   RowSums sums_;
   std::vector<Index> stretch_;  ///< of each column
 };
@@ -139,11 +171,12 @@ struct CellSums {
 };
 
 CellSums sum_cells(const DeflectionMap& map, const Layout& layout, double length, double width,
-                   const CentreLine& centre) {
+                   double noise, const CentreLine& centre) {
   const ChannelGrid& grid = map.grid();
   const double pitch = grid.pitch_z.si(), bin = layout.edges[1] - layout.edges[0];
   const double reach = layout.edges[layout.n_z()] + centre.farthest(length) + pitch;
-  RowReader reader(map, layout, std::max(kLongestGap * width, kGapPixels * grid.pitch_x.si()));
+  RowReader reader(map, layout, std::max(kLongestGap * width, kGapPixels * grid.pitch_x.si()),
+                   std::max(kSpike * noise, kRoundOff));
   CellSums cells(layout);
   for (Index iz = 0; iz < grid.nz; ++iz) {
     if (std::abs(grid.z(iz)) > reach) continue;
@@ -197,7 +230,7 @@ CrossSections cut_sections(const DeflectionMap& map, Length channel_length, Leng
   if (layout.n_x() == 0) return cut;
   cut.x = layout.x;
   cut.z = 0.5 * (layout.edges.head(layout.n_z()) + layout.edges.tail(layout.n_z()));
-  const CellSums cells = sum_cells(map, layout, length, width, centre);
+  const CellSums cells = sum_cells(map, layout, length, width, noise.si(), centre);
   const auto good = cells.found > kWhole * cells.wanted && cells.wanted > 0.0;
   cut.zeta = good.select(cells.height / cells.found.max(1e-300), 0.0);
   cut.flags = good.select(Flags2::Zero(layout.n_z(), layout.n_x()),

@@ -13,8 +13,10 @@ namespace manoscope::maps {
 /// where the wall has its kink. Every map of one camera and channel gives the same cells.
 ///
 /// The mean across is that of the straight lines between pixels, so that it does not hang on where
-/// pixels lie in a bin. Missing pixels are bridged along the flow by straight lines, up to a tenth
-/// of the width (2.5 pixels at least); a cell with a wider gap is flagged.
+/// pixels lie in a bin. Single pixels that stand off their row by ten deviations of the noise are
+/// left out: along the flow a wall is smooth, where across despiking must spare its bend. They and
+/// missing pixels are bridged along the flow by straight lines, up to a tenth of the width (2.5
+/// pixels at least); a cell with a wider gap is flagged.
 ///
 /// Uncertainty: pixel noise, and what the bridges miss of the wall's curvature along the flow.
 ///

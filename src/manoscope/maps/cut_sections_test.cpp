@@ -125,6 +125,23 @@ TEST(CutSections, StatesTheNoiseOfItsCells) {
   EXPECT_NEAR(pulls.width(), 1.0, 0.03);
 }
 
+TEST(CutSections, LeavesOutSinglePixelsThatStandOff) {
+  const Length noise = 20.0 * nm;
+  const Shape wall = [](double x, double z) {
+    return parabola(0.0, z) * (1.0 - std::exp(-(x + 0.2e-3) / 0.5e-3));
+  };
+  const DeflectionMap clean = sampled(wall, 65.3, 0.0, noise);
+  Array2 heights = clean.zeta();
+  for (Index ix = 10; ix + 10 < heights.cols(); ix += 7) heights(5 + ix % 60, ix) += 0.5e-6;
+  const DeflectionMap spiky(clean.grid(), heights, clean.flags(), noise);
+  const CrossSections expected = cut(clean), found = cut(spiky);
+  // Bridging along the flow instead: the wall's bend over two pixels of 32 um, at most 50 um /
+  // (0.5 mm)^2, in one of 16 pixels or more. A spike would be 30 nm.
+  const double bound = 75e-6 / 0.25e-6 * std::pow(32e-6, 2) / 2.0 / 16.0;
+  EXPECT_LT((found.zeta - expected.zeta).abs().maxCoeff(), bound);
+  EXPECT_EQ((found.flags != 0).count(), 0);
+}
+
 TEST(CutSections, FlagsACellWithAHoleTooWideToBridge) {
   const CrossSections cells = cut(with_flags(sampled(parabola, 65.3), [](Index iz, Index ix) {
     return iz == 30 && ix >= 100 && ix < 110;  // 0.35 mm of a row

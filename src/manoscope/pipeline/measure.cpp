@@ -14,6 +14,7 @@
 #include "manoscope/flow/parasitic.hpp"
 #include "manoscope/inversion/end_doubt.hpp"
 #include "manoscope/pipeline/assemble.hpp"
+#include "manoscope/pipeline/checks.hpp"
 #include "manoscope/pipeline/stages.hpp"
 
 namespace manoscope::pipeline {
@@ -252,12 +253,17 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   measurement.flow_rate_uncertainty =
       measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
   store_map_conditions(reduced, measurement);
-  const inversion::LeftOut left_out = inversion::leave_one_out(
-      curves, options.curves,
-      inversion::wanted_stretch(experiment.channel.length, experiment.channel.width,
-                                options.section));
+  const inversion::Stretch stretch = inversion::wanted_stretch(
+      experiment.channel.length, experiment.channel.width, options.section);
+  const inversion::LeftOut left_out = inversion::leave_one_out(curves, options.curves, stretch);
+  store_left_out(left_out, measurement);
+  store_shapes(experiment, reduced, curves, stretch, n_threads, measurement);
+  store_repeats(experiment, reduced, curves, findings, stretch, measurement);
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
                                      doubtful_levels(curves, left_out), runs, findings);
+  for (const auto& doubts : {doubt_shapes(experiment, measurement), doubt_repeats(measurement)}) {
+    measurement.warnings.insert(measurement.warnings.end(), doubts.begin(), doubts.end());
+  }
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&
       experiment.wall->thickness) {
     measurement.warnings.push_back(fmt::format(
