@@ -80,8 +80,28 @@ ADDED = {
     "flow_rate_uncertainty": (("run",), "m3 s-1"),
     "density": ((), "kg m-3"),
     "coverage": ((), "1"),
+    "extracted_drop_variance": (("budget_source", "run"), "Pa2"),
+    "left_out_x": (("left_out_x",), "m"),
+    "left_out_error": (("level", "left_out_x"), "Pa"),
+    "left_out_uncertainty": (("level", "left_out_x"), "Pa"),
+    "left_out_mean_error": (("level",), "Pa"),
+    "left_out_mean_uncertainty": (("level",), "Pa"),
+    "section_x": (("section_x",), "m"),
+    "section_z": (("section_z",), "m"),
+    "shape_chi_square": (("map", "section_x"), "1"),
+    "shape_dof": (("map", "section_x"), "1"),
+    "shape_misfit": (("map", "section_z", "section_x"), "m"),
+    "shape_reduced_chi_square": (("map",), "1"),
+    "shape_p_value": (("map",), "1"),
+    "shape_worst": (("map", "bound"), "m"),
+    "shape_reading_shift": (("map",), "Pa"),
+    "repeat_scatter": (("repeat",), "Pa"),
+    "repeat_chi_square": (("repeat",), "1"),
+    "repeat_dof": (("repeat",), "1"),
+    "repeat_p_value": (("repeat",), "1"),
 }
-LABELS = {"run": ("run",), "budget_source": ("budget_source",), "map": ("map",)}
+LABELS = {"run": ("run",), "budget_source": ("budget_source",), "map": ("map",),
+          "repeat": ("repeat",)}
 FLAGS = {"no_data": 1, "out_of_calibration": 2, "ambiguous": 4, "insensitive": 8,
          "outside_test_section": 16}
 NO_ANSWER = 1 | 2 | 4 | 8

@@ -11,6 +11,7 @@
 #include "manoscope/core/flags.hpp"
 #include "manoscope/core/random.hpp"
 #include "manoscope/results/schema.hpp"
+#include "tests/support/example_checks.hpp"
 
 namespace manoscope::test_support {
 namespace {
@@ -356,6 +357,7 @@ Measurement example_measurement(const ExampleSize& size) {
   add_crossings(m, size.crossings);
   add_maps(m, size);
   add_response(m);
+  add_example_checks(m, size.seed);
   return m;
 }
 

@@ -11,6 +11,7 @@
 #include "manoscope/core/flags.hpp"
 #include "manoscope/maps/channel_map.hpp"
 #include "manoscope/maps/combine_shifts.hpp"
+#include "manoscope/maps/cut_sections.hpp"
 #include "manoscope/maps/despike.hpp"
 #include "manoscope/maps/level.hpp"
 #include "manoscope/numerics/robust.hpp"
@@ -217,6 +218,9 @@ ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const Map
                                  options.width, known.placement, bend);
   result.condition = leveled.condition;
   result.condition.centre = find_centre_line(leveled.deflection, frame.length, frame.width);
+  result.sections =
+      cut_sections(leveled.deflection, frame.length, frame.width, leveled.condition.noise.sigma,
+                   result.condition.centre.value_or(known.placement));
   if (known.texture != nullptr) {
     result.condition.texture = find_texture_shift(*known.texture, leveled.deflection);
   }

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "manoscope/core/cross_sections.hpp"
 #include "manoscope/core/deflection_map.hpp"
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/height_map.hpp"
@@ -84,6 +85,7 @@ struct MapKnowledge {
 /// One map reduced to its profile.
 struct ReducedMap {
   Profile profile;
+  CrossSections sections;  ///< from the wall's own middle where it shows, else the placement
   MapCondition condition;
   double crest = 0.0;              ///< m, deflection at mid-channel on the centre line; NaN if bad
   double crest_uncertainty = 0.0;  ///< m, standard

@@ -45,6 +45,32 @@ std::map<std::string, Array1> variance_by_source(const Uncertainty& uncertainty)
   return lines;
 }
 
+/// Variance of a drop by budget line.
+std::map<std::string, double> variance_by_source(const Estimate& drop) {
+  std::map<std::string, std::map<std::string, double>> effects;  // by source, by variable
+  for (const Estimate::Term& term : drop.terms) effects[term.source][term.variable] += term.effect;
+  std::map<std::string, double> lines;
+  for (const auto& [source, by_variable] : effects) {
+    for (const auto& [variable, effect] : by_variable) lines[source] += effect * effect;
+  }
+  return lines;
+}
+
+/// Budget of the extracted drops, over the sources of the pressures.
+void store_drop_budget(const std::vector<RunFindings>& findings, results::Measurement& m) {
+  const auto n_runs = static_cast<Index>(findings.size());
+  m.extracted_drop_variance =
+      Array2::Constant(static_cast<Index>(m.budget_source.size()), n_runs, kNan);
+  for (Index r = 0; r < n_runs; ++r) {
+    const auto& agreement = findings[static_cast<std::size_t>(r)].agreement;
+    if (!agreement) continue;
+    auto lines = variance_by_source(agreement->extracted);
+    for (std::size_t s = 0; s < m.budget_source.size(); ++s) {
+      m.extracted_drop_variance(static_cast<Index>(s), r) = lines[m.budget_source[s]];
+    }
+  }
+}
+
 void store_budget(const std::vector<RunFindings>& findings, results::Measurement& m) {
   const auto n_runs = static_cast<Index>(findings.size());
   // A source that a run does not have adds 0 where there is an answer.
@@ -66,6 +92,7 @@ void store_budget(const std::vector<RunFindings>& findings, results::Measurement
           masked(variance, [&](Index i) { return reading.answered(i); });
     }
   }
+  store_drop_budget(findings, m);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "manoscope/calibration/constitutive_curves.hpp"
-#include "manoscope/calibration/fit_curves.hpp"
 #include "manoscope/inversion/intersections.hpp"
+#include "manoscope/inversion/leave_one_out.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
 #include "manoscope/inversion/tube_law.hpp"
@@ -54,11 +54,10 @@ struct LevelDoubt {
   double pull = 0.0;               ///< (read - label) over the uncertainty of both
 };
 
-/// Leaves out each inner level in turn, reads its map on the curves of the others at stations about
-/// mid-channel, and lists the levels that are off by more than 5 standard uncertainties in the
-/// median.
+/// The levels that, left out, are off by more than 5 standard uncertainties in the median over the
+/// stations.
 std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& curves,
-                                        const calibration::FitCurvesOptions& options);
+                                        const inversion::LeftOut& left_out);
 
 /// Doubts worth a person's time, in words.
 std::vector<std::string> find_doubts(const experiment::Experiment& experiment,

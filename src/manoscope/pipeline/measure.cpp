@@ -15,6 +15,7 @@
 #include "manoscope/inversion/end_doubt.hpp"
 #include "manoscope/inversion/simultaneous_band.hpp"
 #include "manoscope/pipeline/assemble.hpp"
+#include "manoscope/pipeline/checks.hpp"
 #include "manoscope/pipeline/stages.hpp"
 #include "manoscope/pipeline/tube_law_findings.hpp"
 
@@ -264,8 +265,17 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_map_conditions(reduced, measurement);
   store_tube_law(at_rest, inversion::station_stiffness(curves, gauge_of(experiment)), findings,
                  measurement);
+  const inversion::Stretch stretch = inversion::wanted_stretch(
+      experiment.channel.length, experiment.channel.width, options.section);
+  const inversion::LeftOut left_out = inversion::leave_one_out(curves, options.curves, stretch);
+  store_left_out(left_out, measurement);
+  store_shapes(experiment, reduced, curves, stretch, n_threads, measurement);
+  store_repeats(experiment, reduced, curves, findings, stretch, measurement);
   measurement.warnings = find_doubts(experiment, place, reduced, curves,
-                                     doubtful_levels(curves, options.curves), runs, findings);
+                                     doubtful_levels(curves, left_out), runs, findings);
+  for (const auto& doubts : {doubt_shapes(experiment, measurement), doubt_repeats(measurement)}) {
+    measurement.warnings.insert(measurement.warnings.end(), doubts.begin(), doubts.end());
+  }
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&
       experiment.wall->thickness) {
     measurement.warnings.push_back(fmt::format(

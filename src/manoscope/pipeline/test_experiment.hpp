@@ -42,6 +42,8 @@ class TestExperiment {
  public:
   explicit TestExperiment(twin::Scenario made_of = small_scenario(), std::uint64_t seed = 1)
       : scenario(std::move(made_of)), twin(twin::make_virtual_experiment(scenario, seed)) {}
+  TestExperiment(twin::Scenario made_of, twin::VirtualExperiment made)
+      : scenario(std::move(made_of)), twin(std::move(made)) {}
 
   twin::Scenario scenario;
   twin::VirtualExperiment twin;

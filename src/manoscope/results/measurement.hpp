@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
+#include "manoscope/results/checks.hpp"
 
 namespace manoscope::results {
 
@@ -15,7 +16,7 @@ namespace manoscope::results {
 /// run (n_r) flow runs in the order of the experiment; map (n_m) every map that was read;
 /// crossing (n_c) crossing points of all runs.
 /// A number that does not exist (no transducer, no answer of the wall) is NaN.
-struct Measurement {
+struct Measurement : Checks {
   // Global attributes.
   std::string title, source, history;
   std::string experiment;             ///< the whole experiment.toml

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/results/schema_checks.hpp"
 
 namespace manoscope::results {
 namespace {
@@ -12,10 +13,16 @@ using M = Measurement;
 
 Index size_of(const auto& values) { return static_cast<Index>(values.size()); }
 
+template <class List>
+List joined(List list, const List& more) {
+  list.insert(list.end(), more.begin(), more.end());
+  return list;
+}
+
 }  // namespace
 
 const std::vector<Dimension>& dimensions() {
-  static const std::vector<Dimension> list{
+  static const std::vector<Dimension> own{
       {"x", [](const M& m) { return m.x.size(); }, "stations along the flow"},
       {"x_other", [](const M& m) { return m.x.size(); }, "the same stations, second index"},
       {"level", [](const M& m) { return m.level_pressure.size(); }, "calibration pressures"},
@@ -30,6 +37,7 @@ const std::vector<Dimension>& dimensions() {
        "cells of the picture of the wall's response along the flow"},
       {"response_z", [](const M& m) { return m.response_z.size(); }, "the same across"},
   };
+  static const std::vector<Dimension> list = joined(own, check_dimensions());
   return list;
 }
 
@@ -55,7 +63,7 @@ const std::vector<GlobalText>& global_texts() {
 }
 
 const std::vector<Variable>& variables() {
-  static const std::vector<Variable> list{
+  static const std::vector<Variable> own{
       {"x", {"x"}, "m", "distance from the channel's inlet edge along the flow", &M::x},
       {"run", {"run"}, "1", "label of the flow run", &M::run},
 
@@ -449,6 +457,7 @@ const std::vector<Variable>& variables() {
        "deflection at the highest pressure minus that at the lowest, means over cells",
        &M::wall_response},
   };
+  static const std::vector<Variable> list = joined(own, check_variables());
   return list;
 }
 
