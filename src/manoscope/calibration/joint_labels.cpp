@@ -74,6 +74,9 @@ Array1 slopes(const Array1& state, const Array1& label) {
   return result;
 }
 
+/// Labels that were read, or the true pressures of levels that are yet to be read.
+enum class Labels { read, true_pressures };
+
 /// Labels given the size of the spline's rest.
 struct Estimate {
   double log_likelihood;
@@ -85,8 +88,8 @@ struct Estimate {
 
 class LabelModel {
  public:
-  LabelModel(const States& states, const Array1& label, const Array1& sigma)
-      : label_(label), scale_(label.maxCoeff() - label.minCoeff()) {
+  LabelModel(const States& states, const Array1& label, const Array1& sigma, Labels kind)
+      : label_(label), kind_(kind), scale_(label.maxCoeff() - label.minCoeff()) {
     const Index n = label.size();
     const double reach = states.value.abs().maxCoeff();
     const Array1 q = states.value / reach;
@@ -127,8 +130,11 @@ class LabelModel {
     const auto log_determinant = [](const Eigen::LLT<Matrix>& of) {
       return 2.0 * Matrix(of.matrixL()).diagonal().array().log().sum();
     };
-    result.log_likelihood =
-        -0.5 * (label_.matrix().dot(weighted) + log_determinant(factors) + log_determinant(normal));
+    double square = label_.matrix().dot(weighted);
+    if (kind_ == Labels::true_pressures) {
+      square += (projector.diagonal().array() * (label_variance_ + state_variance_)).sum();
+    }
+    result.log_likelihood = -0.5 * (square + log_determinant(factors) + log_determinant(normal));
     const auto variance = label_variance_.matrix().asDiagonal();
     result.response = Matrix::Identity(n, n) - variance * projector;
     result.pressure = label_ - label_variance_ * weighted.array();
@@ -138,22 +144,61 @@ class LabelModel {
     return result;
   }
 
+  /// Covariance of what one size of the rest makes of the labels beyond the mean over all: of their
+  /// values, and before they are read of their errors.
+  Matrix spread(const Estimate& one, const JointLabels& mean) const {
+    const Eigen::VectorXd off = (one.pressure - mean.pressure).matrix();
+    Matrix covariance = off * off.transpose();
+    if (kind_ == Labels::true_pressures) {
+      const Matrix beyond = one.response - mean.response;
+      covariance += beyond * label_variance_.matrix().asDiagonal() * beyond.transpose();
+    }
+    return covariance;
+  }
+
  private:
   Array1 label_;
+  Labels kind_;
   double scale_, floor_ = 0.0;
   Matrix law_, kernel_;
   Array1 label_variance_, state_variance_;
 };
 
-}  // namespace
+/// Estimates for sizes of the rest in equal ratios, and how likely each is.
+struct Sizes {
+  std::vector<Estimate> estimates;
+  std::vector<double> weight;  ///< sum 1; of estimates[i], whose size is e times that of its weight
+};
 
-std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
-  constexpr Index kFewest = 6;
+Sizes try_sizes(const LabelModel& model) {
   constexpr double kSmallest = -14.0, kLargest = 3.0, kStep = 0.25;  // log of the rest's size
-  constexpr double kWorstPull = 4.5;
   // A size e times that of the likelihood: for one given wall the most likely smoothing is biased
   // by up to 0.7 of its standard uncertainty, this one by up to 0.5.
   constexpr std::size_t kLooser = 4;  // steps
+  std::vector<Estimate> estimates;
+  double best = -std::numeric_limits<double>::infinity();
+  for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
+    estimates.push_back(model.estimate(log_size));
+    best = std::max(best, estimates.back().log_likelihood);
+  }
+  Sizes sizes;
+  if (!std::isfinite(best)) return sizes;
+  double total = 0.0;
+  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
+    const double weight = std::exp(estimates[i].log_likelihood - best);
+    Estimate& estimate = estimates[i + kLooser];
+    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
+    total += weight;
+    sizes.weight.push_back(weight);
+    sizes.estimates.push_back(std::move(estimate));
+  }
+  for (double& weight : sizes.weight) weight /= total;
+  return sizes;
+}
+
+std::optional<JointLabels> settle(const std::vector<Level>& levels, Labels kind) {
+  constexpr Index kFewest = 6;
+  constexpr double kWorstPull = 4.5;
   const auto n = static_cast<Index>(levels.size());
   Array1 label(n), sigma(n);
   for (Index k = 0; k < n; ++k) {
@@ -164,42 +209,36 @@ std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
   const auto states = project(levels);
   if (!states || !(states->value.maxCoeff() > states->value.minCoeff())) return std::nullopt;
 
-  const LabelModel model(*states, label, sigma);
-  std::vector<Estimate> estimates;
-  double best = -std::numeric_limits<double>::infinity();
-  for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
-    estimates.push_back(model.estimate(log_size));
-    best = std::max(best, estimates.back().log_likelihood);
-  }
-  if (!std::isfinite(best)) return std::nullopt;
-  double total = 0.0;
+  const LabelModel model(*states, label, sigma, kind);
+  const Sizes sizes = try_sizes(model);
+  if (sizes.weight.empty()) return std::nullopt;
   JointLabels joint{Array1::Zero(n), Matrix::Zero(n, n), Matrix::Zero(n, n)};
   double worst = 0.0;
-  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
-    const double weight = std::exp(estimates[i].log_likelihood - best);
-    const Estimate& estimate = estimates[i + kLooser];
-    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
-    total += weight;
-    joint.pressure += weight * estimate.pressure;
-    joint.response += weight * estimate.response;
-    worst += weight * estimate.worst_pull;
+  for (std::size_t i = 0; i < sizes.weight.size(); ++i) {
+    joint.pressure += sizes.weight[i] * sizes.estimates[i].pressure;
+    joint.response += sizes.weight[i] * sizes.estimates[i].response;
+    worst += sizes.weight[i] * sizes.estimates[i].worst_pull;
   }
-  if (!(total > 0.0)) return std::nullopt;
-  joint.pressure /= total;
-  joint.response /= total;
-  if (!(worst / total <= kWorstPull)) return std::nullopt;
+  if (kind == Labels::read && !(worst <= kWorstPull)) return std::nullopt;
   Matrix covariance = Matrix::Zero(n, n);
-  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
-    const double weight = std::exp(estimates[i].log_likelihood - best) / total;
-    const Estimate& estimate = estimates[i + kLooser];
-    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
-    const Eigen::VectorXd off = (estimate.pressure - joint.pressure).matrix();
-    covariance += weight * (estimate.covariance + off * off.transpose());
+  for (std::size_t i = 0; i < sizes.weight.size(); ++i) {
+    const Estimate& estimate = sizes.estimates[i];
+    covariance += sizes.weight[i] * (estimate.covariance + model.spread(estimate, joint));
   }
   // Exact labels leave zero rows: the floor keeps the factor's pivots above round-off.
   covariance.diagonal().array() += 1e-12 * sigma.square().maxCoeff();
   joint.root = covariance.llt().matrixL();
   return joint;
+}
+
+}  // namespace
+
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels) {
+  return settle(levels, Labels::read);
+}
+
+std::optional<JointLabels> expect_labels(const std::vector<Level>& levels) {
+  return settle(levels, Labels::true_pressures);
 }
 
 }  // namespace manoscope::calibration
