@@ -48,20 +48,28 @@ std::optional<States> project(const std::vector<Level>& levels) {
   return states;
 }
 
-/// dp/ds at every level, by the line through it and its two neighbours in s.
-Array1 slopes(const Array1& state, const Array1& label) {
+/// dp/ds at every level, by the line through it and its two neighbours in s; through more of them
+/// where these are repeats, whose states differ by noise alone.
+Array1 slopes(const States& states, const Array1& label) {
+  const Array1& state = states.value;
   const Index n = state.size();
+  constexpr double kClear = 20.0;  // standard uncertainties
+  const double least = kClear * states.sigma.maxCoeff();
   std::vector<Index> order(static_cast<std::size_t>(n));
   for (Index k = 0; k < n; ++k) order[static_cast<std::size_t>(k)] = k;
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return state[a] < state[b]; });
+  const auto at = [&](Index j) { return order[static_cast<std::size_t>(j)]; };
   Array1 result = Array1::Zero(n);
   for (Index i = 0; i < n; ++i) {
+    Index first = std::max<Index>(0, i - 1), last = std::min(n - 1, i + 1);
+    while (state[at(last)] - state[at(first)] < least && (first > 0 || last < n - 1)) {
+      first = std::max<Index>(0, first - 1);
+      last = std::min(n - 1, last + 1);
+    }
     double count = 0.0, ss = 0.0, sp = 0.0, sss = 0.0, ssp = 0.0;
-    const Index here = order[static_cast<std::size_t>(i)];
-    for (Index j = std::max<Index>(0, i - 1); j <= std::min(n - 1, i + 1); ++j) {
-      const Index k = order[static_cast<std::size_t>(j)];
-      const double s = state[k] - state[here], p = label[k] - label[here];
+    for (Index j = first; j <= last; ++j) {
+      const double s = state[at(j)] - state[at(i)], p = label[at(j)] - label[at(i)];
       count += 1.0;
       ss += s;
       sp += p;
@@ -69,7 +77,7 @@ Array1 slopes(const Array1& state, const Array1& label) {
       ssp += s * p;
     }
     const double determinant = count * sss - ss * ss;
-    if (determinant > 0.0) result[here] = (count * ssp - ss * sp) / determinant;
+    if (determinant > 0.0) result[at(i)] = (count * ssp - ss * sp) / determinant;
   }
   return result;
 }
@@ -107,7 +115,7 @@ class LabelModel {
       }
     }
     label_variance_ = sigma.square();
-    state_variance_ = (slopes(states.value, label) * states.sigma).square();
+    state_variance_ = (slopes(states, label) * states.sigma).square();
     // Exact labels and states still leave a covariance that can be inverted.
     constexpr double kFloor = 1e-3;
     floor_ = std::pow(kFloor * std::sqrt(label_variance_.maxCoeff()), 2);
@@ -170,23 +178,24 @@ struct Sizes {
   std::vector<double> weight;  ///< sum 1; of estimates[i], whose size is e times that of its weight
 };
 
-Sizes try_sizes(const LabelModel& model) {
-  constexpr double kSmallest = -14.0, kLargest = 3.0, kStep = 0.25;  // log of the rest's size
+/// @param step  from size to size, in their logarithm; 1 is a whole number of steps.
+Sizes try_sizes(const LabelModel& model, double step) {
+  constexpr double kSmallest = -14.0, kLargest = 3.0;  // log of the rest's size
   // A size e times that of the likelihood: for one given wall the most likely smoothing is biased
   // by up to 0.7 of its standard uncertainty, this one by up to 0.5.
-  constexpr std::size_t kLooser = 4;  // steps
+  const auto looser = static_cast<std::size_t>(std::lround(1.0 / step));
   std::vector<Estimate> estimates;
   double best = -std::numeric_limits<double>::infinity();
-  for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
+  for (double log_size = kSmallest; log_size <= kLargest; log_size += step) {
     estimates.push_back(model.estimate(log_size));
     best = std::max(best, estimates.back().log_likelihood);
   }
   Sizes sizes;
   if (!std::isfinite(best)) return sizes;
   double total = 0.0;
-  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
+  for (std::size_t i = 0; i + looser < estimates.size(); ++i) {
     const double weight = std::exp(estimates[i].log_likelihood - best);
-    Estimate& estimate = estimates[i + kLooser];
+    Estimate& estimate = estimates[i + looser];
     if (weight == 0.0 || estimate.pressure.size() == 0) continue;
     total += weight;
     sizes.weight.push_back(weight);
@@ -210,7 +219,10 @@ std::optional<JointLabels> settle(const std::vector<Level>& levels, Labels kind)
   if (!states || !(states->value.maxCoeff() > states->value.minCoeff())) return std::nullopt;
 
   const LabelModel model(*states, label, sigma, kind);
-  const Sizes sizes = try_sizes(model);
+  // Expected likelihoods are smoother than that of one set of labels, and asked for by the
+  // thousand.
+  constexpr double kStep = 0.25, kExpectedStep = 0.5;
+  const Sizes sizes = try_sizes(model, kind == Labels::read ? kStep : kExpectedStep);
   if (sizes.weight.empty()) return std::nullopt;
   JointLabels joint{Array1::Zero(n), Matrix::Zero(n, n), Matrix::Zero(n, n)};
   double worst = 0.0;

@@ -116,6 +116,21 @@ TEST(JointLabels, AreNotEstimatedWhereAMistakeIsAmongThem) {
   }
 }
 
+TEST(JointLabels, OfRepeatsAtTheTopAreOne) {
+  // Two readings of the highest level that differ by three standard uncertainties of their
+  // difference: the wall stands at the same place both times.
+  Campaign made = campaign(membrane, 0.0, 40e-6, 5);
+  made.levels.push_back(made.levels.back());
+  Level& again = made.levels.back();
+  again.name += " again";
+  again.pressure += 42.0 * Pa;
+  RandomStream noise(48, "again");
+  for (double& zeta : again.profile.zeta) zeta += 1e-9 * noise.normal();
+  const auto joint = estimate_labels(made.levels);
+  ASSERT_TRUE(joint);
+  EXPECT_NEAR(joint->pressure[24], joint->pressure[23], 1.0);
+}
+
 /// The campaign before any label is read: true pressures, profiles without errors.
 std::vector<Level> planned(const WallLaw& law, double low, double high) {
   Campaign made = campaign(law, low, high, 0);
