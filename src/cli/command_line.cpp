@@ -78,6 +78,10 @@ void Command::positional(const std::string& name, std::filesystem::path& value,
   impl_->app->add_option(name, value, help)->required()->type_name("");
 }
 
+void Command::positional(const std::string& name, std::string& value, const std::string& help) {
+  impl_->app->add_option(name, value, help)->required()->type_name("");
+}
+
 void Command::optional_positional(const std::string& name, std::string& value,
                                   const std::string& help) {
   impl_->app->add_option(name, value, help)->type_name("");

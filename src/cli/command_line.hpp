@@ -33,6 +33,7 @@ class Command {
   void positional(const std::string& name, std::filesystem::path& value, const std::string& help);
   void positional(const std::string& name, std::vector<std::filesystem::path>& value,
                   const std::string& help);
+  void positional(const std::string& name, std::string& value, const std::string& help);
   /// A word that may be left out.
   void optional_positional(const std::string& name, std::string& value, const std::string& help);
   /// A text option, e.g. "-o,--output".

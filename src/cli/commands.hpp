@@ -12,6 +12,7 @@ void add_init(Program& program);
 void add_inspect(Program& program);
 void add_judge(Program& program);
 void add_measure(Program& program);
+void add_plan(Program& program);
 void add_report(Program& program);
 void add_twin(Program& program);
 

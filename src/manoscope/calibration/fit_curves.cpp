@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "manoscope/calibration/joint_labels.hpp"
 #include "manoscope/core/error.hpp"
 
 namespace manoscope::calibration {
@@ -35,18 +37,16 @@ std::vector<Group> group_levels(const std::vector<Level>& levels, double pooling
 }
 
 /// The pressures that the curves go through, and the errors they share.
-void settle_pressures(ConstitutiveCurves& curves, bool joint_labels, const WallCurves* wall) {
+void settle_pressures(ConstitutiveCurves& curves, std::optional<JointLabels> joint) {
   const auto n = static_cast<Index>(curves.levels.size());
-  if (joint_labels) {
-    if (const auto joint = estimate_labels(curves.levels, wall)) {
-      curves.level_pressure = joint->pressure;
-      curves.label_response = joint->response;
-      curves.label_effect = joint->root;
-      for (Index j = 0; j < n; ++j) {
-        curves.label_error.push_back(fmt::format("pressure labels together, {}", j + 1));
-      }
-      return;
+  if (joint) {
+    curves.level_pressure = std::move(joint->pressure);
+    curves.label_response = std::move(joint->response);
+    curves.label_effect = std::move(joint->root);
+    for (Index j = 0; j < n; ++j) {
+      curves.label_error.push_back(fmt::format("pressure labels together, {}", j + 1));
     }
+    return;
   }
   curves.level_pressure = Array1(n);
   curves.label_response = Matrix::Identity(n, n);
@@ -144,6 +144,22 @@ class StationFitter {
   std::vector<Array1> sigma_;
 };
 
+/// Curves of all stations through levels whose pressures are settled.
+void draw_curves(ConstitutiveCurves& curves, const FitCurvesOptions& options) {
+  curves.x = curves.levels.front().profile.x;
+  const std::vector<Level> estimated = curves.estimated_levels();
+  const PressureScale scale = fit_pressure_scale(estimated);
+  const StationFitter fitter(estimated, options);
+  for (Index ix = 0; ix < curves.x.size(); ++ix) {
+    auto knots = fitter.knots(ix);
+    if (knots.size() < 2) {
+      curves.curves.emplace_back();
+    } else {
+      curves.curves.emplace_back(ConstitutiveCurve(scale, std::move(knots)));
+    }
+  }
+}
+
 }  // namespace
 
 void FitCurvesOptions::validate() const {
@@ -161,19 +177,19 @@ ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions&
   options.validate();
   ConstitutiveCurves result;
   result.levels = sort_levels(std::move(levels));
-  result.x = result.levels.front().profile.x;
-  settle_pressures(result, options.joint_labels, wall);
-  const std::vector<Level> estimated = result.estimated_levels();
-  const PressureScale scale = fit_pressure_scale(estimated);
-  const StationFitter fitter(estimated, options);
-  for (Index ix = 0; ix < result.x.size(); ++ix) {
-    auto knots = fitter.knots(ix);
-    if (knots.size() < 2) {
-      result.curves.emplace_back();
-    } else {
-      result.curves.emplace_back(ConstitutiveCurve(scale, std::move(knots)));
-    }
-  }
+  settle_pressures(result,
+                   options.joint_labels ? estimate_labels(result.levels, wall) : std::nullopt);
+  draw_curves(result, options);
+  return result;
+}
+
+ConstitutiveCurves expect_curves(std::vector<Level> levels, const FitCurvesOptions& options) {
+  options.validate();
+  sort_levels(levels);  // sees that there are enough
+  ConstitutiveCurves result;
+  result.levels = order_levels(std::move(levels));
+  settle_pressures(result, options.joint_labels ? expect_labels(result.levels) : std::nullopt);
+  draw_curves(result, options);
   return result;
 }
 

@@ -42,4 +42,14 @@ struct FitCurvesOptions {
 ConstitutiveCurves fit_curves(std::vector<Level> levels, const FitCurvesOptions& options = {},
                               const WallCurves* wall = nullptr);
 
+/// The curves that fit_curves() is expected to find once the labels of these levels are read: for
+/// planning. Pressures are those of expect_labels(), or the true ones where it has none.
+///
+/// @param levels  with their true pressures and profiles without errors; the uncertainties are
+/// those
+///                that labels and profiles will have. Several levels at one pressure are readings
+///                to come: they stay levels of their own, and pool into one knot.
+/// @throws InputError as sort_levels().
+ConstitutiveCurves expect_curves(std::vector<Level> levels, const FitCurvesOptions& options = {});
+
 }  // namespace manoscope::calibration

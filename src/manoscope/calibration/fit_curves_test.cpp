@@ -217,6 +217,22 @@ TEST(FitCurves, TakesEveryFallForRealWhereNoUncertaintyIsGiven) {
   EXPECT_LT(curve.knots()[2].zeta, curve.knots()[1].zeta);
 }
 
+TEST(ExpectCurves, KeepReadingsToComeApartAndPoolTheirKnots) {
+  const auto zeta = [](double p) { return 2e-9 * p; };
+  std::vector<double> zetas;
+  const std::vector<double> pressures{0.0, 1e3, 2e3, 2e3, 3e3, 3e3, 3e3};
+  for (const double p : pressures) zetas.push_back(zeta(p));
+  const auto levels = one_station(pressures, zetas, 1e-9, 10.0);
+  const auto curves = expect_curves(levels);  // one station: no joint estimate
+  EXPECT_EQ(curves.levels.size(), 7u);
+  EXPECT_EQ(knot_sizes(*curves.curves[0]), (std::vector<std::size_t>{1, 1, 2, 3}));
+  // fit_curves() has merged what bears one label.
+  EXPECT_EQ(fit_curves(levels).levels.size(), 4u);
+  // u bends by 1e-5 of itself where p_s is a hundred times the range.
+  EXPECT_NEAR(curves.curves[0]->zeta(2.5e3), zeta(2.5e3), 1e-5 * zeta(2.5e3));
+  EXPECT_THROW(expect_curves(one_station({0.0, 1e3, 1e3}, {0.0, 1e-6, 1e-6})), InputError);
+}
+
 TEST(FitCurves, RefusesOptionsOutOfRange) {
   const test::QuietTraps quiet;
   const auto levels = sampled(even(5, 0.0, 8e3), [](double p) { return 1e-9 * p; });

@@ -92,20 +92,28 @@ std::optional<Array1> model_pressures(const WallCurves& wall, const States& stat
   return result;
 }
 
-/// dp/ds at every level, by the line through it and its two neighbours in s.
-Array1 slopes(const Array1& state, const Array1& label) {
+/// dp/ds at every level, by the line through it and its two neighbours in s; through more of them
+/// where these are repeats, whose states differ by noise alone.
+Array1 slopes(const States& states, const Array1& label) {
+  const Array1& state = states.value;
   const Index n = state.size();
+  constexpr double kClear = 20.0;  // standard uncertainties
+  const double least = kClear * states.sigma.maxCoeff();
   std::vector<Index> order(static_cast<std::size_t>(n));
   for (Index k = 0; k < n; ++k) order[static_cast<std::size_t>(k)] = k;
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return state[a] < state[b]; });
+  const auto at = [&](Index j) { return order[static_cast<std::size_t>(j)]; };
   Array1 result = Array1::Zero(n);
   for (Index i = 0; i < n; ++i) {
+    Index first = std::max<Index>(0, i - 1), last = std::min(n - 1, i + 1);
+    while (state[at(last)] - state[at(first)] < least && (first > 0 || last < n - 1)) {
+      first = std::max<Index>(0, first - 1);
+      last = std::min(n - 1, last + 1);
+    }
     double count = 0.0, ss = 0.0, sp = 0.0, sss = 0.0, ssp = 0.0;
-    const Index here = order[static_cast<std::size_t>(i)];
-    for (Index j = std::max<Index>(0, i - 1); j <= std::min(n - 1, i + 1); ++j) {
-      const Index k = order[static_cast<std::size_t>(j)];
-      const double s = state[k] - state[here], p = label[k] - label[here];
+    for (Index j = first; j <= last; ++j) {
+      const double s = state[at(j)] - state[at(i)], p = label[at(j)] - label[at(i)];
       count += 1.0;
       ss += s;
       sp += p;
@@ -113,10 +121,13 @@ Array1 slopes(const Array1& state, const Array1& label) {
       ssp += s * p;
     }
     const double determinant = count * sss - ss * ss;
-    if (determinant > 0.0) result[here] = (count * ssp - ss * sp) / determinant;
+    if (determinant > 0.0) result[at(i)] = (count * ssp - ss * sp) / determinant;
   }
   return result;
 }
+
+/// Labels that were read, or the true pressures of levels that are yet to be read.
+enum class Labels { read, true_pressures };
 
 /// Labels given the size of the spline's rest.
 struct Estimate {
@@ -129,9 +140,9 @@ struct Estimate {
 
 class LabelModel {
  public:
-  LabelModel(const States& states, const Array1& label, const Array1& sigma,
+  LabelModel(const States& states, const Array1& label, const Array1& sigma, Labels kind,
              const std::optional<Array1>& model)
-      : label_(label), scale_(label.maxCoeff() - label.minCoeff()) {
+      : label_(label), kind_(kind), scale_(label.maxCoeff() - label.minCoeff()) {
     const Index n = label.size();
     const double reach = states.value.abs().maxCoeff();
     const Array1 q = states.value / reach;
@@ -154,7 +165,7 @@ class LabelModel {
       }
     }
     label_variance_ = sigma.square();
-    state_variance_ = (slopes(states.value, label) * states.sigma).square();
+    state_variance_ = (slopes(states, label) * states.sigma).square();
     // Exact labels and states still leave a covariance that can be inverted.
     constexpr double kFloor = 1e-3;
     floor_ = std::pow(kFloor * std::sqrt(label_variance_.maxCoeff()), 2);
@@ -177,8 +188,11 @@ class LabelModel {
     const auto log_determinant = [](const Eigen::LLT<Matrix>& of) {
       return 2.0 * Matrix(of.matrixL()).diagonal().array().log().sum();
     };
-    result.log_likelihood =
-        -0.5 * (label_.matrix().dot(weighted) + log_determinant(factors) + log_determinant(normal));
+    double square = label_.matrix().dot(weighted);
+    if (kind_ == Labels::true_pressures) {
+      square += (projector.diagonal().array() * (label_variance_ + state_variance_)).sum();
+    }
+    result.log_likelihood = -0.5 * (square + log_determinant(factors) + log_determinant(normal));
     const auto variance = label_variance_.matrix().asDiagonal();
     result.response = Matrix::Identity(n, n) - variance * projector;
     result.pressure = label_ - label_variance_ * weighted.array();
@@ -188,22 +202,64 @@ class LabelModel {
     return result;
   }
 
+  /// Covariance of what one size of the rest makes of the labels beyond the mean over all: of their
+  /// values, and before they are read of their errors.
+  Matrix spread(const Estimate& one, const JointLabels& mean) const {
+    const Eigen::VectorXd off = (one.pressure - mean.pressure).matrix();
+    Matrix covariance = off * off.transpose();
+    if (kind_ == Labels::true_pressures) {
+      const Matrix beyond = one.response - mean.response;
+      covariance += beyond * label_variance_.matrix().asDiagonal() * beyond.transpose();
+    }
+    return covariance;
+  }
+
  private:
   Array1 label_;
+  Labels kind_;
   double scale_, floor_ = 0.0;
   Matrix law_, kernel_;
   Array1 label_variance_, state_variance_;
 };
 
-/// Of levels on one branch of the wall's states.
-std::optional<JointLabels> estimate_branch(const std::vector<Level>& levels,
-                                           const WallCurves* wall) {
-  constexpr Index kFewest = 6;
-  constexpr double kSmallest = -14.0, kLargest = 3.0, kStep = 0.25;  // log of the rest's size
-  constexpr double kWorstPull = 4.5;
+/// Estimates for sizes of the rest in equal ratios, and how likely each is.
+struct Sizes {
+  std::vector<Estimate> estimates;
+  std::vector<double> weight;  ///< sum 1; of estimates[i], whose size is e times that of its weight
+};
+
+/// @param step  from size to size, in their logarithm; 1 is a whole number of steps.
+Sizes try_sizes(const LabelModel& model, double step) {
+  constexpr double kSmallest = -14.0, kLargest = 3.0;  // log of the rest's size
   // A size e times that of the likelihood: for one given wall the most likely smoothing is biased
   // by up to 0.7 of its standard uncertainty, this one by up to 0.5.
-  constexpr std::size_t kLooser = 4;  // steps
+  const auto looser = static_cast<std::size_t>(std::lround(1.0 / step));
+  std::vector<Estimate> estimates;
+  double best = -std::numeric_limits<double>::infinity();
+  for (double log_size = kSmallest; log_size <= kLargest; log_size += step) {
+    estimates.push_back(model.estimate(log_size));
+    best = std::max(best, estimates.back().log_likelihood);
+  }
+  Sizes sizes;
+  if (!std::isfinite(best)) return sizes;
+  double total = 0.0;
+  for (std::size_t i = 0; i + looser < estimates.size(); ++i) {
+    const double weight = std::exp(estimates[i].log_likelihood - best);
+    Estimate& estimate = estimates[i + looser];
+    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
+    total += weight;
+    sizes.weight.push_back(weight);
+    sizes.estimates.push_back(std::move(estimate));
+  }
+  for (double& weight : sizes.weight) weight /= total;
+  return sizes;
+}
+
+/// Of levels on one branch of the wall's states.
+std::optional<JointLabels> settle(const std::vector<Level>& levels, Labels kind,
+                                  const WallCurves* wall) {
+  constexpr Index kFewest = 6;
+  constexpr double kWorstPull = 4.5;
   const auto n = static_cast<Index>(levels.size());
   Array1 label(n), sigma(n);
   for (Index k = 0; k < n; ++k) {
@@ -214,38 +270,25 @@ std::optional<JointLabels> estimate_branch(const std::vector<Level>& levels,
   const auto states = project(levels);
   if (!states || !(states->value.maxCoeff() > states->value.minCoeff())) return std::nullopt;
 
-  const LabelModel model(*states, label, sigma,
+  const LabelModel model(*states, label, sigma, kind,
                          wall != nullptr ? model_pressures(*wall, *states) : std::nullopt);
-  std::vector<Estimate> estimates;
-  double best = -std::numeric_limits<double>::infinity();
-  for (double log_size = kSmallest; log_size <= kLargest; log_size += kStep) {
-    estimates.push_back(model.estimate(log_size));
-    best = std::max(best, estimates.back().log_likelihood);
-  }
-  if (!std::isfinite(best)) return std::nullopt;
-  double total = 0.0;
+  // Expected likelihoods are smoother than that of one set of labels, and asked for by the
+  // thousand.
+  constexpr double kStep = 0.25, kExpectedStep = 0.5;
+  const Sizes sizes = try_sizes(model, kind == Labels::read ? kStep : kExpectedStep);
+  if (sizes.weight.empty()) return std::nullopt;
   JointLabels joint{Array1::Zero(n), Matrix::Zero(n, n), Matrix::Zero(n, n)};
   double worst = 0.0;
-  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
-    const double weight = std::exp(estimates[i].log_likelihood - best);
-    const Estimate& estimate = estimates[i + kLooser];
-    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
-    total += weight;
-    joint.pressure += weight * estimate.pressure;
-    joint.response += weight * estimate.response;
-    worst += weight * estimate.worst_pull;
+  for (std::size_t i = 0; i < sizes.weight.size(); ++i) {
+    joint.pressure += sizes.weight[i] * sizes.estimates[i].pressure;
+    joint.response += sizes.weight[i] * sizes.estimates[i].response;
+    worst += sizes.weight[i] * sizes.estimates[i].worst_pull;
   }
-  if (!(total > 0.0)) return std::nullopt;
-  joint.pressure /= total;
-  joint.response /= total;
-  if (!(worst / total <= kWorstPull)) return std::nullopt;
+  if (kind == Labels::read && !(worst <= kWorstPull)) return std::nullopt;
   Matrix covariance = Matrix::Zero(n, n);
-  for (std::size_t i = 0; i + kLooser < estimates.size(); ++i) {
-    const double weight = std::exp(estimates[i].log_likelihood - best) / total;
-    const Estimate& estimate = estimates[i + kLooser];
-    if (weight == 0.0 || estimate.pressure.size() == 0) continue;
-    const Eigen::VectorXd off = (estimate.pressure - joint.pressure).matrix();
-    covariance += weight * (estimate.covariance + off * off.transpose());
+  for (std::size_t i = 0; i < sizes.weight.size(); ++i) {
+    const Estimate& estimate = sizes.estimates[i];
+    covariance += sizes.weight[i] * (estimate.covariance + model.spread(estimate, joint));
   }
   // Exact labels leave zero rows: the floor keeps the factor's pivots above round-off.
   covariance.diagonal().array() += 1e-12 * sigma.square().maxCoeff();
@@ -258,7 +301,7 @@ std::optional<JointLabels> estimate_branch(const std::vector<Level>& levels,
 std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
                                            const WallCurves* wall) {
   const Index first = level_after_snap(levels).value_or(0);
-  const auto branch = estimate_branch({levels.begin() + first, levels.end()}, wall);
+  const auto branch = settle({levels.begin() + first, levels.end()}, Labels::read, wall);
   if (!branch || first == 0) return branch;
   const auto n = static_cast<Index>(levels.size()), n_branch = n - first;
   JointLabels joint{Array1(n), Matrix::Identity(n, n), Matrix::Zero(n, n)};
@@ -270,6 +313,10 @@ std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
   joint.response.bottomRightCorner(n_branch, n_branch) = branch->response;
   joint.root.bottomRightCorner(n_branch, n_branch) = branch->root;
   return joint;
+}
+
+std::optional<JointLabels> expect_labels(const std::vector<Level>& levels) {
+  return settle(levels, Labels::true_pressures, nullptr);
 }
 
 }  // namespace manoscope::calibration

@@ -31,7 +31,7 @@ Level merge(const std::vector<Level>& levels, std::size_t first, std::size_t las
 
 }  // namespace
 
-std::vector<Level> sort_levels(std::vector<Level> levels) {
+std::vector<Level> order_levels(std::vector<Level> levels) {
   std::stable_sort(levels.begin(), levels.end(), [](const Level& a, const Level& b) {
     return a.pressure != b.pressure ? a.pressure < b.pressure : a.name < b.name;
   });
@@ -43,6 +43,11 @@ std::vector<Level> sort_levels(std::vector<Level> levels) {
                        "Take all maps of one experiment with the same camera settings");
     }
   }
+  return levels;
+}
+
+std::vector<Level> sort_levels(std::vector<Level> levels) {
+  levels = order_levels(std::move(levels));
   std::vector<Level> result;
   for (std::size_t first = 0; first < levels.size();) {
     std::size_t last = first + 1;

@@ -22,6 +22,10 @@ struct Level {
   double gauge_share = 1.0;
 };
 
+/// Levels in ascending order of pressure, equal ones by name.
+/// @throws InputError for stations that differ between levels.
+std::vector<Level> order_levels(std::vector<Level> levels);
+
 /// Levels in ascending order of pressure; those read at the same pressure become one.
 ///
 /// Repeats are averaged with equal weight, station by station over the profiles that count; the

@@ -72,6 +72,22 @@ Array1 response_nodes(Length length, Length width) {
   return nodes;
 }
 
+double half_response_wavelength(const Array1& nodes, const Eigen::VectorXd& answer, Index node) {
+  const Array1 distance = nodes - nodes[node];
+  const auto shown = [&](double wavelength) {
+    const double k = 2.0 * std::numbers::pi / wavelength;
+    return (answer.array() * (k * distance).cos()).sum() / answer.sum();
+  };
+  const double shortest = 2.0 * (nodes[node + 1] - nodes[node]);
+  double low = shortest, high = nodes[nodes.size() - 1];
+  if (shown(low) > 0.5 || shown(high) < 0.5) return 0.0;
+  while (high > 1.001 * low) {
+    const double middle = std::sqrt(low * high);
+    (shown(middle) < 0.5 ? low : high) = middle;
+  }
+  return std::sqrt(low * high);
+}
+
 WallResponse::WallResponse(const wall::ClampedWall& wall, const Array1& levels,
                            const Monitor& monitor)
     : wall_(wall, grid_options(levels.maxCoeff()), monitor),
@@ -150,20 +166,7 @@ WallResponse::Answer WallResponse::answer(const Eigen::VectorXd& pressure) const
 }
 
 double WallResponse::half_wavelength(const Matrix& kernel, Index node) const {
-  const Array1 distance = nodes_ - nodes_[node];
-  const auto shown = [&](double wavelength) {
-    const double k = 2.0 * std::numbers::pi / wavelength;
-    return (kernel.row(node).transpose().array() * (k * distance).cos()).sum() /
-           kernel.row(node).sum();
-  };
-  const double shortest = 2.0 * (nodes_[node + 1] - nodes_[node]);
-  double low = shortest, high = nodes_[nodes_.size() - 1];
-  if (shown(low) > 0.5 || shown(high) < 0.5) return 0.0;
-  while (high > 1.001 * low) {
-    const double middle = std::sqrt(low * high);
-    (shown(middle) < 0.5 ? low : high) = middle;
-  }
-  return std::sqrt(low * high);
+  return half_response_wavelength(nodes_, kernel.row(node), node);
 }
 
 }  // namespace manoscope::inversion

@@ -15,6 +15,13 @@ namespace manoscope::inversion {
 /// From 0 to the length, both included; 3.5 % of the width apart at the ends, 12 % inside.
 Array1 response_nodes(Length length, Length width);
 
+/// Wavelength, m, of a ripple of p(x) of which the wall at a node shows half. 0 if it shows more of
+/// every ripple longer than two cells, or less of every one.
+///
+/// @param nodes   (n) m, of response_nodes().
+/// @param answer  (n) of the wall at the node to the pressure at each node, in any unit.
+double half_response_wavelength(const Array1& nodes, const Eigen::VectorXd& answer, Index node);
+
 /// What reading a wall station by station makes of a pressure that is not uniform.
 ///
 /// A station-by-station reading looks up the deflection zeta(x) on the curve zeta(x; p) of the wall
@@ -46,8 +53,7 @@ class WallResponse {
   /// @throws InputError if the wall has no equilibrium near that of a uniform pressure.
   Answer answer(const Eigen::VectorXd& pressure) const;
 
-  /// Wavelength, m, of a ripple of p(x) of which the reading shows half, about a node; of the
-  /// kernel's row there. 0 if it shows more of every ripple longer than two cells.
+  /// half_response_wavelength() of a reading, about a node; of the kernel's row there.
   double half_wavelength(const Matrix& kernel, Index node) const;
 
  private:

@@ -145,17 +145,19 @@ void read_wall(TableReader& root, Scenario& scenario, io::Faults& faults) {
   table->finish();
 }
 
-void read_fluid(TableReader& root, Scenario& scenario) {
-  auto table = root.table("fluid", Need::required);
-  if (!table) return;
+/// @return false if there is none.
+bool read_fluid(TableReader& root, Scenario& scenario, Need need) {
+  auto table = root.table("fluid", need);
+  if (!table) return false;
   scenario.fluid_name = table->text("name").value_or("");
   scenario.fluid.viscosity = required<Viscosity>(*table, "viscosity", io::bounds::kViscosity);
   scenario.fluid.density = required<Density>(*table, "density", io::bounds::kDensity);
   table->finish();
+  return true;
 }
 
-void read_runs(TableReader& root, Scenario& scenario) {
-  if (auto table = root.table("hydrostatic", Need::required)) {
+void read_runs(TableReader& root, Scenario& scenario, Need need) {
+  if (auto table = root.table("hydrostatic", need)) {
     scenario.levels =
         table->quantities<Pressure>("levels", io::bounds::kGaugePressure, Need::required)
             .value_or(std::vector<Pressure>{});
@@ -201,9 +203,8 @@ void check_schema(TableReader& root, io::Faults& faults) {
              fmt::format("This program knows schema {}: write scenario = {}", kSchema, kSchema));
 }
 
-}  // namespace
-
-Scenario parse_scenario(const std::string& text, const fs::path& file) {
+/// @param need  of name, fluid and levels.
+ScenarioDraft read_sections(const std::string& text, const fs::path& file, Need need) {
   io::Faults faults;
   io::TomlValue document;
   try {
@@ -212,13 +213,14 @@ Scenario parse_scenario(const std::string& text, const fs::path& file) {
     throw InputErrors({error});
   }
   TableReader root(document, "", file, faults);
-  Scenario scenario;
+  ScenarioDraft draft;
+  Scenario& scenario = draft.scenario;
   check_schema(root, faults);
-  scenario.name = root.text("name", Need::required).value_or("");
+  scenario.name = root.text("name", need).value_or(file.stem().string());
   read_channel(root, scenario);
   read_wall(root, scenario, faults);
-  read_fluid(root, scenario);
-  read_runs(root, scenario);
+  draft.water_assumed = !read_fluid(root, scenario, need);
+  read_runs(root, scenario, need);
   read_rigid(root, scenario);
   read_camera(root, scenario.camera, faults);
   read_options(root, "gauge", scenario.gauge, faults);
@@ -226,15 +228,18 @@ Scenario parse_scenario(const std::string& text, const fs::path& file) {
   read_options(root, "solver", scenario.solver, faults);
   root.finish();
   faults.throw_if_any(file);
+  return draft;
+}
+
+void validate(const Scenario& scenario, const fs::path& file) {
   try {
     scenario.validate();
   } catch (const InputError& error) {
     throw InputErrors({InputError(file.string(), error.found(), error.mend())});
   }
-  return scenario;
 }
 
-Scenario read_scenario(const fs::path& file) {
+std::string read_text(const fs::path& file) {
   constexpr std::size_t kLargest = 4u << 20;
   const auto refuse = [&](const std::string& found) {
     throw InputErrors({InputError(file.string(), found, "Give a scenario as a TOML file")});
@@ -248,21 +253,60 @@ Scenario read_scenario(const fs::path& file) {
     refuse(fmt::format("{} MB: no scenario is that large", size >> 20));
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad()) refuse("the file cannot be read");
-  return parse_scenario(text, file);
+  return text;
 }
 
-Scenario find_scenario(const std::string& name_or_path) {
+/// A text and the file that it is named after.
+struct Source {
+  std::string text;
+  fs::path file;
+};
+
+Source find_source(const std::string& name_or_path) {
   std::vector<std::string> names;
   for (const ShippedScenario& shipped : shipped_scenarios()) {
-    if (shipped.name == name_or_path) return parse_scenario(shipped.text, shipped.name + ".toml");
+    if (shipped.name == name_or_path) return {shipped.text, shipped.name + ".toml"};
     names.push_back(shipped.name);
   }
   std::error_code error;
-  if (fs::exists(name_or_path, error)) return read_scenario(name_or_path);
+  if (fs::exists(name_or_path, error)) return {read_text(name_or_path), name_or_path};
   throw InputError(name_or_path,
                    fmt::format("no scenario of that name ships, and there is no such file{}",
                                did_you_mean(name_or_path, names)),
                    fmt::format("Give one of {}, or a TOML file", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+Scenario parse_scenario(const std::string& text, const fs::path& file) {
+  Scenario scenario = read_sections(text, file, Need::required).scenario;
+  validate(scenario, file);
+  return scenario;
+}
+
+ScenarioDraft parse_scenario_draft(const std::string& text, const fs::path& file) {
+  ScenarioDraft draft = read_sections(text, file, Need::optional);
+  Scenario& scenario = draft.scenario;
+  if (draft.water_assumed) {
+    scenario.fluid = {1.0 * mPa_s, 998.0 * kg_per_m3};
+    scenario.fluid_name = "water";
+  }
+  draft.has_levels = !scenario.levels.empty();
+  if (!draft.has_levels) scenario.levels = {Pressure{}};
+  validate(scenario, file);
+  return draft;
+}
+
+Scenario read_scenario(const fs::path& file) { return parse_scenario(read_text(file), file); }
+
+Scenario find_scenario(const std::string& name_or_path) {
+  const Source source = find_source(name_or_path);
+  return parse_scenario(source.text, source.file);
+}
+
+ScenarioDraft find_scenario_draft(const std::string& name_or_path) {
+  const Source source = find_source(name_or_path);
+  return parse_scenario_draft(source.text, source.file);
 }
 
 Scenario demo_scenario() {

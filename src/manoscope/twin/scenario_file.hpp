@@ -37,6 +37,18 @@ Scenario parse_scenario(const std::string& text, const std::filesystem::path& fi
 /// @throws InputErrors also if it cannot be read.
 Scenario read_scenario(const std::filesystem::path& file);
 
+/// What is known of an experiment before it is planned.
+struct ScenarioDraft {
+  /// Without levels of its own it has one of 0 Pa.
+  Scenario scenario;
+  bool has_levels = false;
+  bool water_assumed = false;  ///< no [fluid]: 1.0 mPa s, 998 kg/m3
+};
+
+/// The same from a text that may leave out name (that of the file), [fluid] and [hydrostatic]: for
+/// planning.
+ScenarioDraft parse_scenario_draft(const std::string& text, const std::filesystem::path& file);
+
 /// A scenario that comes with the program.
 struct ShippedScenario {
   std::string name;   ///< "S1"
@@ -50,6 +62,9 @@ const std::vector<ShippedScenario>& shipped_scenarios();
 /// The shipped scenario of that name, else the file of that path.
 /// @throws InputError if there is neither (with the names that ship), and as read_scenario().
 Scenario find_scenario(const std::string& name_or_path);
+
+/// The same of a draft.
+ScenarioDraft find_scenario_draft(const std::string& name_or_path);
 
 /// The shipped S1 in small, made in seconds: four flow rates, a camera of 512 x 96 pixels, fewer
 /// cells of the wall (deflections within 1e-3 of those of S1).

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/twin/virtual_experiment.hpp"
@@ -181,6 +182,39 @@ TEST(ScenarioFile, AnUnknownNameIsAnsweredWithThoseThatShip) {
     EXPECT_TRUE(tells(error.mend(), "S1, S1b, S2, S3, S4, S5"));
   }
   EXPECT_THROW(find_scenario(::testing::TempDir()), InputErrors);  // a folder
+}
+
+/// A text without the lines from one that begins a section to the next.
+std::string without(std::string text, const std::string& section) {
+  const auto at = text.find("[" + section + "]");
+  EXPECT_NE(at, std::string::npos) << section;
+  return text.erase(at, text.find("\n[", at) - at + 1);
+}
+
+TEST(ScenarioDraft, MayLeaveOutNameFluidAndLevels) {
+  std::string text = without(without(without(kSound, "fluid"), "hydrostatic"), "flow");
+  text.erase(text.find("name ="), text.find("[channel]") - text.find("name ="));
+  const ScenarioDraft draft = parse_scenario_draft(text, "folder/soft.toml");
+  EXPECT_EQ(draft.scenario.name, "soft");
+  EXPECT_TRUE(draft.water_assumed);
+  EXPECT_EQ(draft.scenario.fluid.viscosity, 1.0 * mPa_s);
+  EXPECT_FALSE(draft.has_levels);
+  EXPECT_EQ(draft.scenario.levels, std::vector<Pressure>{Pressure{}});
+  EXPECT_NE(faults_of(text).find("missing"), std::string::npos);  // no whole scenario
+  const ScenarioDraft whole = parse_scenario_draft(kSound, "mine.toml");
+  EXPECT_TRUE(whole.has_levels);
+  EXPECT_FALSE(whole.water_assumed);
+  EXPECT_EQ(whole.scenario.levels.size(), 2u);
+}
+
+TEST(ScenarioDraft, WithoutAWallIsRefusedByName) {
+  try {
+    parse_scenario_draft(without(kSound, "wall"), "mine.toml");
+    ADD_FAILURE() << "no fault";
+  } catch (const InputErrors& errors) {
+    ASSERT_EQ(errors.faults().size(), 1u);
+    EXPECT_NE(std::string(errors.faults()[0].what()).find("wall"), std::string::npos);
+  }
 }
 
 }  // namespace
