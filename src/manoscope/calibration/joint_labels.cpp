@@ -296,12 +296,11 @@ std::optional<JointLabels> settle(const std::vector<Level>& levels, Labels kind,
   return joint;
 }
 
-}  // namespace
-
-std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
-                                           const WallCurves* wall) {
+/// The same of a wall that may snap through: levels before the jump keep their labels.
+std::optional<JointLabels> settle_behind_snap(const std::vector<Level>& levels, Labels kind,
+                                              const WallCurves* wall) {
   const Index first = level_after_snap(levels).value_or(0);
-  const auto branch = settle({levels.begin() + first, levels.end()}, Labels::read, wall);
+  const auto branch = settle({levels.begin() + first, levels.end()}, kind, wall);
   if (!branch || first == 0) return branch;
   const auto n = static_cast<Index>(levels.size()), n_branch = n - first;
   JointLabels joint{Array1(n), Matrix::Identity(n, n), Matrix::Zero(n, n)};
@@ -315,8 +314,15 @@ std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
   return joint;
 }
 
+}  // namespace
+
+std::optional<JointLabels> estimate_labels(const std::vector<Level>& levels,
+                                           const WallCurves* wall) {
+  return settle_behind_snap(levels, Labels::read, wall);
+}
+
 std::optional<JointLabels> expect_labels(const std::vector<Level>& levels) {
-  return settle(levels, Labels::true_pressures, nullptr);
+  return settle_behind_snap(levels, Labels::true_pressures, nullptr);
 }
 
 }  // namespace manoscope::calibration

@@ -61,6 +61,13 @@ TEST(LevelAfterSnap, IsNoneOfAWallThatOnlyStiffens) {
     const auto passing = [](double p) { return rise(p - 700.0, 2e7); };
     EXPECT_FALSE(level_after_snap(levels_of(kPressures, passing, seed))) << seed;
   }
+  // Repeats: no rise at all between them, and the wall's own from one pair to the next.
+  const auto plate = [](double p) { return 1e-9 * p; };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    EXPECT_FALSE(level_after_snap(
+        levels_of({0, 700, 700, 1400, 1400, 2100, 2100, 2800, 2800, 3500, 3500}, plate, seed)))
+        << seed;
+  }
   EXPECT_FALSE(level_after_snap(levels_of({0, 100, 200}, snapping)));
 }
 

@@ -72,8 +72,8 @@ TEST(SplitErrors, WithoutAnyErrorLeaveCurveShapeAlone) {
   TestExperiment test(clean_scenario());
   const SplitJudgement split = split_errors(test.measure(), test.twin.truth);
   EXPECT_EQ(largest(split, &Summary::labels), 0.0);
-  // 32-bit floats of a map; 64 pixels across scale all profiles alike. Measured: 1.3 mPa.
-  EXPECT_LT(largest(split, &Summary::maps), 0.005);
+  // The place of the frame, found to 20 nm, of 1 Pa/um. (32-bit floats of a map: 1.3 mPa.)
+  EXPECT_LT(largest(split, &Summary::maps), 0.03);
   EXPECT_LT(largest(split, &Summary::locality), kLoadCells);
   EXPECT_GT(largest(split, &Summary::curve_shape), 0.5);
 }
