@@ -6,6 +6,7 @@
 #include "manoscope/report/report.hpp"
 #include "manoscope/results/write.hpp"
 #include "summary.hpp"
+#include "summary_checks.hpp"
 
 namespace manoscope::cli {
 
@@ -37,7 +38,8 @@ void add_measure(Program& program) {
       print(summary_json(measurement, args->out));
     } else {
       const bool table = !context.quiet && measurement.flow_rate.size() > 0;
-      print((table ? pressure_text(measurement) + "\n" : "") + summary_text(measurement));
+      print((table ? pressure_text(measurement) + "\n" : "") + summary_text(measurement) +
+            (context.quiet ? "" : checks_text(measurement)));
     }
     for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
     if (!context.json) {

@@ -8,6 +8,7 @@
 #include "manoscope/core/uncertainty.hpp"
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
+#include "summary_checks.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -134,7 +135,13 @@ std::string summary_json(const results::Measurement& m, const std::filesystem::p
                     {"tube_law_b_N_m", number(m.tube_law_b[r])},
                     {"tube_law_b_uncertainty_N_m", number(m.tube_law_b_uncertainty[r])}});
   }
-  return json{{"output", folder.string()}, {"runs", runs}, {"warnings", m.warnings}}.dump(2) + "\n";
+  return json{{"output", folder.string()},
+              {"runs", runs},
+              {"checks", checks_json(m)},
+              {"improve_first", advice_json(m)},
+              {"warnings", m.warnings}}
+             .dump(2) +
+         "\n";
 }
 
 std::string twin_text(const twin::VirtualExperiment& made, const std::filesystem::path& folder) {

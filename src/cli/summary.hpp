@@ -13,7 +13,7 @@ namespace manoscope::cli {
 std::string summary_text(const results::Measurement& measurement);
 /// p(x) of every run at a few stations, as an aligned table.
 std::string pressure_text(const results::Measurement& measurement);
-/// The same runs as JSON, SI units: what drops.csv holds.
+/// The same as JSON, SI units: what drops.csv holds, checks, and what to improve first.
 std::string summary_json(const results::Measurement& measurement,
                          const std::filesystem::path& folder);
 

@@ -59,8 +59,28 @@ class Measure(DemoFolder):
         self.assertEqual(quiet.stderr, "")
         self.assertNotIn("p(x)", quiet.stdout)
         self.assertIn("agrees", quiet.stdout)
+        self.assertNotIn("Checks", quiet.stdout)
         self.assertNotIn("p(x) ", measure(self.out / "experiment", "-o", out, "--json",
                                       check_code=0).stdout)
+
+    def test_measure_tells_its_checks_and_what_to_improve_first(self):
+        out = self.folder / "checks"
+        done = measure(self.out / "experiment", "-o", out, check_code=0)
+        for line in ("Checks without truth", "Leaving one level out: rms ", "Cross-sections of the",
+                     "Improve first: "):
+            self.assertIn(line, done.stdout)
+        self.assertTrue(all(len(line) <= 100 for line in done.stdout.split("Checks")[1].splitlines()))
+        told = json.loads(measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
+        self.assertEqual({"left_out", "shapes", "repeats"}, set(told["checks"]))
+        self.assertGreater(told["checks"]["left_out"]["rms_Pa"], 0.0)
+        maps = [entry["map"] for entry in told["checks"]["shapes"]]
+        self.assertEqual(len(maps), len(set(maps)))
+        self.assertEqual({"pressure", "extracted_drop"}, set(told["improve_first"]))
+        advice = told["improve_first"]["pressure"]
+        self.assertIn(advice["source"], done.stdout)
+        # Half of a source leaves a quarter of its variance.
+        self.assertAlmostEqual(advice["bars_shrink_if_halved"],
+                               1.0 - (1.0 - 0.75 * advice["share_of_variance"]) ** 0.5, delta=1e-12)
 
     def test_a_result_is_replaced_by_its_own_experiment_alone(self):
         out = self.folder / "kept"

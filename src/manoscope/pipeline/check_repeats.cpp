@@ -118,7 +118,7 @@ std::vector<std::string> doubt_repeats(const Measurement& m) {
     if (!std::isless(m.repeat_p_value[i], kChance)) continue;
     const bool is_level = m.repeat[static_cast<std::size_t>(i)].starts_with("level");
     doubts.push_back(fmt::format(
-        "The {} maps of {} scatter by {:.2g} Pa about their mean, {:.1f} times their bars: {} did "
+        "The {} maps of {} scatter by {:.1f} Pa about their mean, {:.1f} times their bars: {} did "
         "not stand still between them, and p(x) is less certain than told",
         m.repeat_maps[static_cast<std::size_t>(i)], m.repeat[static_cast<std::size_t>(i)],
         m.repeat_scatter[i], std::sqrt(m.repeat_chi_square[i] / m.repeat_dof[i]),

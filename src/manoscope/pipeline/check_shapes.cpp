@@ -113,6 +113,11 @@ double worst_ratio(const Measurement& m, Index map) {
   return worst;
 }
 
+/// Two digits at least, no exponent.
+std::string plain(double value) {
+  return value < 10.0 ? fmt::format("{:.1f}", value) : fmt::format("{:.0f}", value);
+}
+
 std::string words(const Experiment& experiment, const Measurement& m, Index map, double usual) {
   const auto i = static_cast<std::size_t>(map);
   const int run = m.map_run[i];
@@ -123,13 +128,13 @@ std::string words(const Experiment& experiment, const Measurement& m, Index map,
           : fmt::format("Run {} ({})", m.run[static_cast<std::size_t>(run)], m.map[i]);
   std::string text = fmt::format(
       "{}: between x = {:.2f} and {:.2f} mm the wall has not the cross-section that pressure gives "
-      "it (chi-square {:.2g} times what noise makes): dust, heat, a fault of bond or map? If it is "
+      "it (chi-square {} times what noise makes): dust, heat, a fault of bond or map? If it is "
       "no pressure, p(x) ",
-      what, m.shape_worst(map, 0) * 1e3, m.shape_worst(map, 1) * 1e3, worst_ratio(m, map));
+      what, m.shape_worst(map, 0) * 1e3, m.shape_worst(map, 1) * 1e3, plain(worst_ratio(m, map)));
   if (run < 0) text += "of runs that pass this level ";
-  text += fmt::format("may be off there by {:.2g} Pa", shift);
+  text += fmt::format("may be off there by {} Pa", plain(shift));
   if (std::isgreater(usual, 0.0))
-    text += fmt::format(", {:.1g} times its standard uncertainty", shift / usual);
+    text += fmt::format(", {} times its standard uncertainty", plain(shift / usual));
   return text;
 }
 

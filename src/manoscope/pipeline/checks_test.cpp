@@ -127,8 +127,8 @@ TEST(DoubtShapes, NamesFourMapsInFullAndTheRestInOneLine) {
             std::string::npos)
       << doubts[1];
   EXPECT_NE(doubts[2].find("Run Q5 (m2): between x = 4.00 and 5.00 mm"), std::string::npos);
-  EXPECT_NE(doubts[2].find("chi-square 3 times"), std::string::npos) << doubts[2];
-  EXPECT_NE(doubts[2].find("5 times its standard uncertainty"), std::string::npos) << doubts[2];
+  EXPECT_NE(doubts[2].find("chi-square 3.0 times"), std::string::npos) << doubts[2];
+  EXPECT_NE(doubts[2].find("5.0 times its standard uncertainty"), std::string::npos) << doubts[2];
   EXPECT_NE(doubts[4].find("m4, m5"), std::string::npos) << doubts[4];
   // By chance, or too little to matter: not told.
   m.shape_p_value.setConstant(1e-3);

@@ -39,6 +39,13 @@ std::optional<Figure> pressure_of_all_runs(const results::Measurement& measureme
 /// Fig. 4: Q R against the extracted drop, and the difference in percent.
 std::optional<Figure> drop_agreement(const results::Measurement& measurement);
 
+/// Levels read on the curves of the others: error against pressure, and along the channel.
+std::optional<Figure> levels_left_out(const results::Measurement& measurement);
+/// Cross-sections of every map against the calibrated shapes.
+std::optional<Figure> cross_sections(const results::Measurement& measurement);
+/// The map whose cross-sections stand out most, if one does.
+std::optional<Figure> worst_cross_section(const results::Measurement& measurement);
+
 /// All that the measurement has data for, in the order of the report.
 std::vector<Figure> figures(const results::Measurement& measurement);
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "manoscope/report/html_checks.hpp"
 #include "manoscope/report/html_style.hpp"
 #include "manoscope/report/html_tables.hpp"
 #include "manoscope/report/html_text.hpp"
@@ -118,6 +119,8 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
       "href=\"#warnings\">Warnings</a>";
   page += shown.empty() ? "" : "<a href=\"#figures\">Figures</a>";
   page += m.run.empty() ? "" : "<a href=\"#budget\">Uncertainty</a>";
+  const std::string checks = checks_part(m);
+  page += checks.empty() ? "" : "<a href=\"#checks\">Checks</a>";
   page +=
       "<a href=\"#maps\">Maps</a><a href=\"#flags\">Flags</a><a href=\"#open\">Opening the "
       "result</a>"
@@ -133,6 +136,7 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
   if (const auto law = tube_law_table(m); !law.empty()) {
     page += "<h2 id=\"tube-law\">Tube law</h2>\n" + law;
   }
+  page += checks;
   page += "<h2 id=\"maps\">Maps</h2>\n" + maps_table(m);
   page += "<h2 id=\"flags\">Flags</h2>\n" + flags_table(m);
   page += opening_part();

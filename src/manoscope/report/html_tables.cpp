@@ -7,6 +7,7 @@
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/report/figure_data.hpp"
+#include "manoscope/report/html_elements.hpp"
 #include "manoscope/report/html_text.hpp"
 #include "manoscope/report/number_text.hpp"
 #include "manoscope/report/wording.hpp"
@@ -56,23 +57,6 @@ std::string range_text(const Array1& values, DisplayUnit (*unit_for)(double)) {
 
 std::string count(Index n, const char* one, const char* many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
-}
-
-std::string cell(const std::string& content) { return "<td>" + content + "</td>"; }
-std::string row_head(std::string_view label) {
-  return "<th scope=\"row\">" + escape_html(label) + "</th>";
-}
-std::string column_head(const std::string& content) {
-  return "<th scope=\"col\">" + content + "</th>";
-}
-
-/// A table that scrolls by itself where the page is narrow.
-std::string table(const std::string& caption, const std::string& head, const std::string& body,
-                  bool tall = false) {
-  return fmt::format(
-      "<p class=\"caption\">{}</p>\n<div class=\"scroll{}\"><table>\n<thead><tr>{}</tr></thead>\n"
-      "<tbody>\n{}</tbody></table></div>\n",
-      caption, tall ? " tall" : "", head, body);
 }
 
 std::string verdict(double en_number) {

@@ -1,0 +1,97 @@
+#include "summary_checks.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "manoscope/report/advice.hpp"
+#include "manoscope/report/check_summary.hpp"
+
+namespace manoscope::cli {
+namespace {
+
+using nlohmann::json;
+using results::Measurement;
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+/// Broken at blanks to lines of at most 100 characters, those after the first indented.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 100;
+  std::istringstream words(text);
+  std::string lines, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
+      lines += line + '\n';
+      line = "  " + word;
+    } else {
+      line += (line.empty() ? "" : " ") + word;
+    }
+  }
+  return lines + line + '\n';
+}
+
+json shape_json(const Measurement& m, Index map) {
+  const auto i = static_cast<std::size_t>(map);
+  const int run = m.map_run[i];
+  const bool of_run = run >= 0 && static_cast<std::size_t>(run) < m.run.size();
+  return {{"map", m.map[i]},
+          {"run", of_run ? json(m.run[static_cast<std::size_t>(run)]) : json(nullptr)},
+          {"reduced_chi_square", number(m.shape_reduced_chi_square[map])},
+          {"p_value", number(m.shape_p_value[map])},
+          {"x_start_m", number(m.shape_worst(map, 0))},
+          {"x_end_m", number(m.shape_worst(map, 1))},
+          {"reading_shift_Pa", number(m.shape_reading_shift[map])}};
+}
+
+json one_advice(const std::optional<report::Advice>& advice) {
+  if (!advice) return nullptr;
+  return {{"source", advice->source},
+          {"share_of_variance", advice->share},
+          {"bars_shrink_if_halved", advice->shrink},
+          {"hint", advice->hint}};
+}
+
+}  // namespace
+
+std::string checks_text(const Measurement& m) {
+  std::string text;
+  for (const std::string& line : report::check_lines(m)) text += wrapped(line);
+  std::istringstream advice(report::advice_text(m));
+  for (std::string line; std::getline(advice, line);) text += wrapped(line);
+  return text.empty() ? text : "\nChecks without truth\n" + text;
+}
+
+json checks_json(const Measurement& m) {
+  const report::LeftOutSummary left_out = report::summarise_left_out(m);
+  json levels = json::array();
+  for (Index k = 0; k < m.left_out_mean_error.size(); ++k) {
+    levels.push_back({{"level_Pa", m.level_pressure[k]},
+                      {"error_Pa", number(m.left_out_mean_error[k])},
+                      {"uncertainty_Pa", number(m.left_out_mean_uncertainty[k])}});
+  }
+  json shapes = json::array();
+  for (Index i = 0; i < m.shape_p_value.size(); ++i) shapes.push_back(shape_json(m, i));
+  json repeats = json::array();
+  for (std::size_t i = 0; i < m.repeat.size(); ++i) {
+    const auto at = static_cast<Index>(i);
+    repeats.push_back({{"state", m.repeat[i]},
+                       {"maps", m.repeat_maps[i]},
+                       {"scatter_Pa", number(m.repeat_scatter[at])},
+                       {"chi_square", number(m.repeat_chi_square[at])},
+                       {"degrees_of_freedom", number(m.repeat_dof[at])},
+                       {"p_value", number(m.repeat_p_value[at])}});
+  }
+  return {
+      {"left_out",
+       {{"rms_Pa", number(left_out.rms)}, {"pull_rms", number(left_out.pull)}, {"levels", levels}}},
+      {"shapes", shapes},
+      {"repeats", repeats}};
+}
+
+json advice_json(const Measurement& m) {
+  return {{"pressure", one_advice(report::advice_on_pressure(m))},
+          {"extracted_drop", one_advice(report::advice_on_drop(m))}};
+}
+
+}  // namespace manoscope::cli

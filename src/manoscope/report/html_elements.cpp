@@ -1,0 +1,27 @@
+#include "manoscope/report/html_elements.hpp"
+
+#include <fmt/format.h>
+
+#include "manoscope/report/html_text.hpp"
+
+namespace manoscope::report {
+
+std::string cell(const std::string& content) { return "<td>" + content + "</td>"; }
+
+std::string row_head(std::string_view label) {
+  return "<th scope=\"row\">" + escape_html(label) + "</th>";
+}
+
+std::string column_head(const std::string& content) {
+  return "<th scope=\"col\">" + content + "</th>";
+}
+
+std::string table(const std::string& caption, const std::string& head, const std::string& body,
+                  bool tall) {
+  return fmt::format(
+      "<p class=\"caption\">{}</p>\n<div class=\"scroll{}\"><table>\n<thead><tr>{}</tr></thead>\n"
+      "<tbody>\n{}</tbody></table></div>\n",
+      caption, tall ? " tall" : "", head, body);
+}
+
+}  // namespace manoscope::report
