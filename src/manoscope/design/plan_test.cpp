@@ -103,15 +103,15 @@ TEST(Plan, FindsTheFewestLevelsForAWishAndSaysSo) {
 TEST(Plan, SaysWhatWouldDoWhereAWishIsNotMet) {
   Wish wish;
   wish.highest = 10.0 * kPa;
-  wish.levels = 10;
-  wish.uncertainty = 22.0 * Pa;
+  wish.levels = 16;
+  wish.uncertainty = 11.0 * Pa;
   twin::ScenarioDraft draft = small_draft();
   draft.scenario.flow_rates.clear();
   draft.scenario.gauge.noise = 20.0 * Pa;
   const Plan plan = make_plan(draft, wish, 1);
   ASSERT_EQ(plan.answers.size(), 1u);
   EXPECT_FALSE(plan.answers[0].met);
-  EXPECT_NE(plan.answers[0].text.find("not met by 10 maps"), std::string::npos);
+  EXPECT_NE(plan.answers[0].text.find("not met by 16 maps"), std::string::npos);
   EXPECT_NE(plan.answers[0].text.find("gauge noise"), std::string::npos) << plan.answers[0].text;
 }
 
