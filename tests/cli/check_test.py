@@ -59,7 +59,9 @@ class Check(DemoFolder):
         self.assertIn("instrument.pressure_noise", doubt)
         out = self.folder / "bare_labels_out"
         done = run("measure", bare, "-o", out, check_code=0)
-        notes = [line for line in done.stderr.splitlines() if line.startswith("note:")]
+        # Beside notes on single maps, whose cross-sections are looked at whatever the labels.
+        notes = [line for line in done.stderr.splitlines()
+                 if line.startswith("note:") and "cross-section" not in line]
         self.assertEqual(len(notes), 1, notes)
         self.assertIn("No pressure label has an uncertainty", notes[0])
         self.assertIn("No pressure label has an uncertainty", (out / "report.html").read_text())
