@@ -60,8 +60,8 @@ class Measure(DemoFolder):
         self.assertNotIn("p(x)", quiet.stdout)
         self.assertIn("agrees", quiet.stdout)
         self.assertNotIn("Checks", quiet.stdout)
-        self.assertNotIn("x [mm]", measure(self.out / "experiment", "-o", out, "--json",
-                                           check_code=0).stdout)
+        self.assertNotIn("Pressure along the channel",
+                         measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
 
     def test_measure_tells_its_checks_and_what_to_improve_first(self):
         out = self.folder / "checks"

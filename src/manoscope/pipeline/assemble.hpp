@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "manoscope/calibration/constitutive_curves.hpp"
+#include "manoscope/calibration/fit_curves.hpp"
 #include "manoscope/inversion/intersections.hpp"
-#include "manoscope/inversion/leave_one_out.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
 #include "manoscope/inversion/tube_law.hpp"
@@ -54,10 +54,11 @@ struct LevelDoubt {
   double pull = 0.0;               ///< (read - label) over the uncertainty of both
 };
 
-/// The levels that, left out, are off by more than 5 standard uncertainties in the median over the
-/// stations.
+/// The levels whose maps, read on curves through the labels of the others as they were read, are
+/// off by more than 5 standard uncertainties in the median over the stations of a stretch.
 std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& curves,
-                                        const inversion::LeftOut& left_out);
+                                        calibration::FitCurvesOptions options,
+                                        const inversion::Stretch& stretch);
 
 /// Doubts worth a person's time, in words.
 std::vector<std::string> find_doubts(const experiment::Experiment& experiment,

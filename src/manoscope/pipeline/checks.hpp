@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "manoscope/inversion/leave_one_out.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 
 namespace manoscope::pipeline {

@@ -2,14 +2,19 @@
 #include <cmath>
 #include <vector>
 
+#include "manoscope/inversion/leave_one_out.hpp"
 #include "manoscope/numerics/robust.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 
 namespace manoscope::pipeline {
 
 std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& curves,
-                                        const inversion::LeftOut& left_out) {
+                                        calibration::FitCurvesOptions options,
+                                        const inversion::Stretch& stretch) {
   constexpr double kSure = 5.0;
+  // Each label against curves through the others as they were read.
+  options.joint_labels = false;
+  const inversion::LeftOut left_out = inversion::leave_one_out(curves, options, stretch);
   std::vector<LevelDoubt> doubts;
   for (std::size_t k = 0; k < left_out.levels.size(); ++k) {
     const inversion::LevelLeftOut& level = left_out.levels[k];

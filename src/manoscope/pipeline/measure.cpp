@@ -267,12 +267,12 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
                  measurement);
   const inversion::Stretch stretch = inversion::wanted_stretch(
       experiment.channel.length, experiment.channel.width, options.section);
-  const inversion::LeftOut left_out = inversion::leave_one_out(curves, options.curves, stretch);
-  store_left_out(left_out, measurement);
+  store_left_out(inversion::leave_one_out(curves, options.curves, stretch), measurement);
   store_shapes(experiment, reduced, curves, stretch, n_threads, measurement);
   store_repeats(experiment, reduced, curves, findings, stretch, measurement);
-  measurement.warnings = find_doubts(experiment, place, reduced, curves,
-                                     doubtful_levels(curves, left_out), runs, findings);
+  measurement.warnings =
+      find_doubts(experiment, place, reduced, curves,
+                  doubtful_levels(curves, options.curves, stretch), runs, findings);
   for (const auto& doubts : {doubt_shapes(experiment, measurement), doubt_repeats(measurement)}) {
     measurement.warnings.insert(measurement.warnings.end(), doubts.begin(), doubts.end());
   }
