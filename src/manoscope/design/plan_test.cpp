@@ -49,16 +49,16 @@ TEST(Plan, TakesItsRangeFromTheRuns) {
   Wish wish;
   wish.levels = 9;
   const Plan plan = make_plan(small_draft(), wish, 1);
-  ASSERT_EQ(plan.runs.size(), 2u);
-  EXPECT_LT(plan.range.low, plan.runs[0].outlet);
-  EXPECT_GT(plan.range.high, plan.runs[1].inlet);
+  ASSERT_EQ(plan.planned.runs.size(), 2u);
+  EXPECT_LT(plan.range.low, plan.planned.runs[0].outlet);
+  EXPECT_GT(plan.range.high, plan.planned.runs[1].inlet);
   EXPECT_EQ(plan.planned.levels.size(), 9u);
   EXPECT_GE(plan.planned.levels.back(), plan.range.high);
   EXPECT_EQ(plan.scenario.levels.size(), 9u);
   EXPECT_NO_THROW(plan.scenario.validate());
   EXPECT_EQ(plan.others.size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(plan.planned.over.rms, plan.others[i].over.rms);
-  for (const RunForecast& run : plan.runs) {
+  for (const RunForecast& run : plan.planned.runs) {
     EXPECT_LE(run.rms, run.worst);
     EXPECT_GT(run.rms_error, 0.0);
     EXPECT_GT(run.drop_uncertainty, 0.0);
@@ -103,16 +103,22 @@ TEST(Plan, FindsTheFewestLevelsForAWishAndSaysSo) {
 TEST(Plan, SaysWhatWouldDoWhereAWishIsNotMet) {
   Wish wish;
   wish.highest = 10.0 * kPa;
-  wish.levels = 10;
-  wish.uncertainty = 22.0 * Pa;
+  wish.levels = 16;
+  wish.uncertainty = 15.0 * Pa;
   twin::ScenarioDraft draft = small_draft();
   draft.scenario.flow_rates.clear();
   draft.scenario.gauge.noise = 20.0 * Pa;
   const Plan plan = make_plan(draft, wish, 1);
   ASSERT_EQ(plan.answers.size(), 1u);
   EXPECT_FALSE(plan.answers[0].met);
-  EXPECT_NE(plan.answers[0].text.find("not met by 10 maps"), std::string::npos);
-  EXPECT_NE(plan.answers[0].text.find("gauge noise"), std::string::npos) << plan.answers[0].text;
+  EXPECT_NE(plan.answers[0].text.find("not met by 16 maps"), std::string::npos);
+  EXPECT_NE(plan.answers[0].text.find("place of flow maps"), std::string::npos)
+      << plan.answers[0].text;
+  EXPECT_EQ(plan.answers[0].text.find("whatever the levels"), std::string::npos);
+  wish.uncertainty = 5.0 * Pa;  // 12 Pa are those of the map's place
+  const WishAnswer hopeless = make_plan(draft, wish, 1).answers.at(0);
+  EXPECT_NE(hopeless.text.find("Pa are left whatever the levels"), std::string::npos)
+      << hopeless.text;
 }
 
 TEST(Plan, WantsARange) {
@@ -156,7 +162,7 @@ TEST(Plan, GoesOnWithoutRunsThatChokeWhereTheRangeIsGiven) {
   EXPECT_NE(fault.find("Q1000"), std::string::npos) << fault;
   wish.highest = 10.0 * kPa;
   const Plan plan = make_plan(draft, wish, 1);
-  EXPECT_TRUE(plan.runs.empty());
+  EXPECT_TRUE(plan.planned.runs.empty());
   ASSERT_EQ(plan.notes.size(), 1u);
   EXPECT_NE(plan.notes[0].find("Q1000"), std::string::npos) << plan.notes[0];
 }
