@@ -109,10 +109,10 @@ std::string improvements_text(const Plan& plan) {
 }
 
 std::string runs_text(const Plan& plan) {
-  if (plan.runs.empty()) return "";
+  if (plan.planned.runs.empty()) return "";
   std::vector<std::vector<std::string>> rows{{"run", "p [Pa]", "worst u [Pa]", "rms u", "rms error",
                                               "dp_e [Pa]", "u(dp_e)", "zeta max [um]", "S"}};
-  for (const design::RunForecast& run : plan.runs) {
+  for (const design::RunForecast& run : plan.planned.runs) {
     rows.push_back({run.name, fmt::format("{:.0f}-{:.0f}", run.inlet, run.outlet),
                     short_number(run.worst), short_number(run.rms), short_number(run.rms_error),
                     fmt::format("{:.0f}", run.inlet - run.outlet),
@@ -151,11 +151,30 @@ json levels_json(const std::vector<double>& levels) {
   return list;
 }
 
+json runs_json(const std::vector<design::RunForecast>& forecasts) {
+  json runs = json::array();
+  for (const design::RunForecast& run : forecasts) {
+    runs.push_back({{"run", run.name},
+                    {"flow_rate_m3_s", run.flow_rate.si()},
+                    {"inlet_Pa", run.inlet},
+                    {"outlet_Pa", run.outlet},
+                    {"worst_Pa", number(run.worst)},
+                    {"rms_Pa", number(run.rms)},
+                    {"rms_error_Pa", number(run.rms_error)},
+                    {"drop_uncertainty_Pa", number(run.drop_uncertainty)},
+                    {"drop_error_Pa", number(run.drop_error)},
+                    {"largest_deflection_m", run.deflection},
+                    {"speed_index", run.speed_index}});
+  }
+  return runs;
+}
+
 json set_json(const design::LevelSet& set) {
   return {{"name", set.name},
           {"levels", levels_json(set.levels)},
           {"maps", set.levels.size()},
-          {"uncertainty", over_json(set.over, set.drop)}};
+          {"uncertainty", over_json(set.over, set.drop)},
+          {"runs", runs_json(set.runs)}};
 }
 
 json wall_json(const Plan& plan) {
@@ -174,24 +193,6 @@ json wall_json(const Plan& plan) {
           {"half_response_wavelength_m", {plan.half_wavelength.low, plan.half_wavelength.high}},
           {"read_through_the_wall", plan.through_wall},
           {"gap_at_rest_m", plan.smallest_gap}};
-}
-
-json runs_json(const Plan& plan) {
-  json runs = json::array();
-  for (const design::RunForecast& run : plan.runs) {
-    runs.push_back({{"run", run.name},
-                    {"flow_rate_m3_s", run.flow_rate.si()},
-                    {"inlet_Pa", run.inlet},
-                    {"outlet_Pa", run.outlet},
-                    {"worst_Pa", number(run.worst)},
-                    {"rms_Pa", number(run.rms)},
-                    {"rms_error_Pa", number(run.rms_error)},
-                    {"drop_uncertainty_Pa", number(run.drop_uncertainty)},
-                    {"drop_error_Pa", number(run.drop_error)},
-                    {"largest_deflection_m", run.deflection},
-                    {"speed_index", run.speed_index}});
-  }
-  return runs;
 }
 
 }  // namespace
@@ -219,7 +220,6 @@ std::string plan_json(const Plan& plan, const std::filesystem::path& written) {
               {"others", others},
               {"wall", wall_json(plan)},
               {"what_matters", improvements},
-              {"runs", runs_json(plan)},
               {"wish", answers},
               {"notes", plan.notes},
               {"output", written.empty() ? json(nullptr) : json(written.string())}}

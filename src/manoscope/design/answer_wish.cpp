@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "manoscope/design/pressure_text.hpp"
 #include "manoscope/design/what_matters.hpp"
@@ -27,18 +29,28 @@ std::string what_would_do(const PlacementTask& task, const wall::ClampedWall& wa
   return text;
 }
 
-WishAnswer answer_uncertainty(const std::string& what, double wanted, double found,
-                              std::size_t n_maps, const std::string& where,
-                              const std::string& would_do) {
-  if (found <= wanted) {
-    return {true, fmt::format("{} to {:.3g} Pa: met by {} maps, {:.3g} Pa{}", what, wanted, n_maps,
-                              found, where)};
+/// An uncertainty that is wanted, Pa, and what there is.
+struct Balance {
+  std::string what;
+  double wanted = 0.0, found = 0.0;
+  double floor = 0.0;  ///< whatever the levels and their labels
+  std::size_t n_maps = 0;
+  std::string where;  ///< of what was found
+};
+
+/// @param would_do  says what alone would meet the wish; asked only where it is not met.
+WishAnswer answer_uncertainty(const Balance& of, const std::function<std::string()>& would_do) {
+  const bool met = of.found <= of.wanted;
+  std::string text = fmt::format("{} to {:.3g} Pa: {} by {} maps, {:.3g} Pa{}", of.what, of.wanted,
+                                 met ? "met" : "not met", of.n_maps, of.found, of.where);
+  if (met) return {true, std::move(text)};
+  if (of.floor > of.wanted) {
+    text += fmt::format("; {:.3g} Pa are left whatever the levels", of.floor);
   }
-  const std::string mend = would_do.empty()
-                               ? "Nothing alone mends that: see what matters"
-                               : "With these levels, any of this would do: " + would_do;
-  return {false, fmt::format("{} to {:.3g} Pa: not met by {} maps, {:.3g} Pa{}. {}", what, wanted,
-                             n_maps, found, where, mend)};
+  const std::string mend = would_do();
+  text += mend.empty() ? ". Nothing alone mends that: see what matters"
+                       : ". With these levels, any of this would do: " + mend;
+  return {false, std::move(text)};
 }
 
 WishAnswer answer_resolution(double wanted, const WallReach& reach, double width) {
@@ -86,27 +98,37 @@ std::vector<WishAnswer> answer_wish(const Wish& wish, const PlacementTask& task,
                                     const Demand& demand, const std::vector<double>& levels,
                                     const wall::ClampedWall& wall, const WallReach& reach) {
   std::vector<WishAnswer> answers;
+  const Apparatus exact = with_exact_labels(task.apparatus);
+  const std::vector<double> dense = dense_levels(task);
   if (wish.uncertainty) {
-    const double wanted = wish.uncertainty->si();
-    const auto enough = [&](const Apparatus& apparatus) {
-      return demand.uncertainty(apparatus, levels) <= wanted;
-    };
     const RangeUncertainty over = uncertainty_over(task.apparatus, levels, task.target);
-    const double found = over.of(wish.aim());
     const std::string where = wish.aim() == Aim::rms
                                   ? " rms"
                                   : fmt::format(" at worst, at {}", pressure_text(over.worst_at));
-    answers.push_back(answer_uncertainty("p(x)", wanted, found, levels.size(), where,
-                                         found <= wanted ? "" : what_would_do(task, wall, enough)));
+    const Balance balance{"p(x)",
+                          wish.uncertainty->si(),
+                          over.of(wish.aim()),
+                          demand.uncertainty(exact, dense),
+                          levels.size(),
+                          where};
+    answers.push_back(answer_uncertainty(balance, [&] {
+      return what_would_do(task, wall, [&](const Apparatus& apparatus) {
+        return demand.uncertainty(apparatus, levels) <= balance.wanted;
+      });
+    }));
   }
   if (wish.drop_uncertainty) {
-    const double wanted = wish.drop_uncertainty->si();
-    const auto enough = [&](const Apparatus& apparatus) {
-      return demand.drop(apparatus, levels) <= wanted;
-    };
-    const double found = demand.drop(task.apparatus, levels);
-    answers.push_back(answer_uncertainty("dp_e", wanted, found, levels.size(), " at worst",
-                                         found <= wanted ? "" : what_would_do(task, wall, enough)));
+    const Balance balance{"dp_e",
+                          wish.drop_uncertainty->si(),
+                          demand.drop(task.apparatus, levels),
+                          demand.drop(exact, dense),
+                          levels.size(),
+                          " at worst"};
+    answers.push_back(answer_uncertainty(balance, [&] {
+      return what_would_do(task, wall, [&](const Apparatus& apparatus) {
+        return demand.drop(apparatus, levels) <= balance.wanted;
+      });
+    }));
   }
   if (wish.resolution) {
     answers.push_back(answer_resolution(wish.resolution->si(), reach, wall.width.si()));

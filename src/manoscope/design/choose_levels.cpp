@@ -58,9 +58,10 @@ Levels rounded(const PlacementTask& task, const Levels& levels, double share) {
     }
     if (gap == 0.0) continue;
     const double step = round_step(share * gap);
-    result[k] = step * std::round(levels[k] / step);
-    if (result[k] > task.highest_level) result[k] -= step;
-    if (k + 1 == levels.size() && result[k] < task.lowest_top) result[k] = levels[k];
+    double nearest = step * std::round(levels[k] / step);
+    if (k + 1 == levels.size() && nearest < task.lowest_top) nearest += step;
+    if (nearest > task.highest_level) nearest -= step;
+    result[k] = nearest < task.lowest_top && k + 1 == levels.size() ? levels[k] : nearest;
   }
   return result;
 }
@@ -80,7 +81,8 @@ std::vector<PlannedLevel> count_repeats(const std::vector<double>& levels) {
 }
 
 std::vector<double> tidy_levels(const PlacementTask& task, const std::vector<double>& levels) {
-  const double allowed = kPrice * score_levels(task, levels);
+  const double score = score_levels(task, levels), floor = score_floor(task, levels);
+  const double allowed = floor + kPrice * (score - floor);
   Levels tidy = levels;
   const double noise = task.apparatus.gauge.noise.si();
   for (const double reach : {4.0, 3.0, 2.0, 1.0, 0.5}) {
@@ -93,7 +95,7 @@ std::vector<double> tidy_levels(const PlacementTask& task, const std::vector<dou
     Levels candidate = rounded(task, tidy, share);
     std::sort(candidate.begin(), candidate.end());
     if (largest_repeats(candidate) > task.most_repeats) continue;
-    if (score_levels(task, candidate) <= kPrice * allowed) return candidate;
+    if (score_levels(task, candidate) <= floor + kPrice * (allowed - floor)) return candidate;
   }
   return tidy;
 }

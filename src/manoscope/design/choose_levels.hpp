@@ -18,7 +18,7 @@ struct PlannedLevel {
 std::vector<PlannedLevel> count_repeats(const std::vector<double>& levels);
 
 /// Levels as someone would set them: those closer together than labels tell become repeats of their
-/// mean, and pressures are rounded; neither by more than costs 1 % of the score.
+/// mean, and pressures are rounded; neither by more than costs 1 % of what placing can change.
 ///
 /// @param levels  of place_levels(), Pa, ascending.
 std::vector<double> tidy_levels(const PlacementTask& task, const std::vector<double>& levels);

@@ -80,6 +80,39 @@ double score_apparatuses(const PlacementTask& task, const std::vector<Apparatus>
 
 using Levels = std::vector<double>;
 
+/// In which levels move: half pressure, half deflection, from 0 to 1 at the highest level.
+class Coordinate {
+ public:
+  explicit Coordinate(const PlacementTask& task)
+      : curve_(task.apparatus.curve), top_(task.highest_level), rest_(curve_.deflection(0.0)) {
+    rise_ = curve_.deflection(top_) - rest_;
+  }
+  double of(double pressure) const {
+    return 0.5 * (pressure / top_ + (curve_.deflection(pressure) - rest_) / rise_);
+  }
+  double pressure(double wanted) const {
+    double low = 0.0, high = top_;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = 0.5 * (low + high);
+      (of(middle) < wanted ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+  /// n levels, even in it.
+  Levels even(int n, double first, double last) const {
+    Levels levels;
+    const double from = of(first), to = of(last);
+    for (int k = 0; k < n; ++k) levels.push_back(pressure(from + (to - from) * k / (n - 1)));
+    levels.front() = first;
+    levels.back() = last;
+    return levels;
+  }
+
+ private:
+  const WallCurve& curve_;
+  double top_, rest_, rise_ = 1.0;
+};
+
 class Placer {
  public:
   Placer(const PlacementTask& task, int n_threads, const Monitor& monitor)
@@ -87,14 +120,13 @@ class Placer {
         apparatuses_(possible_apparatuses(task)),
         n_threads_(n_threads),
         monitor_(monitor),
-        first_(task.vented ? 1 : 0) {
-    const WallCurve& curve = task.apparatus.curve;
-    rise_ = curve.deflection(task.highest_level) - curve.deflection(0.0);
-  }
+        at_(task),
+        first_(task.vented ? 1 : 0) {}
 
   Levels run(int n) {
     best_ = start(n);
     least_ = score(best_);
+    floor_ = score_floor(task_, best_);
     exchange(2 * n);
     const double first_step = 0.5 / n;
     for (double step = first_step; step > 0.04 * first_step; step *= 0.5) {
@@ -107,8 +139,8 @@ class Placer {
 
  private:
   static constexpr int kSweeps = 3, kExchanges = 3;
-  static constexpr double kGain = 1e-3;  // below that nothing is gained
-  static constexpr double kApart = 0.5;  // of the mean distance
+  static constexpr double kGain = 1e-3, kExchangeGain = 3e-3;  // below that nothing is gained
+  static constexpr double kApart = 0.5;                        // of the mean distance
 
   /// Crowded levels are dear, not forbidden: what a start has of them can be moved away.
   double score(const Levels& levels) const {
@@ -121,36 +153,16 @@ class Placer {
     const auto more = static_cast<std::size_t>(task_.most_repeats);
     double sum = 0.0;
     for (std::size_t k = 0; k + more < levels.size(); ++k) {
-      const double distance = coordinate(levels[k + more]) - coordinate(levels[k]);
+      const double distance = at_.of(levels[k + more]) - at_.of(levels[k]);
       sum += std::max(0.0, 1.0 - distance / apart);
     }
     return sum;
   }
 
-  /// In which levels move: half pressure, half deflection, from 0 to 1.
-  double coordinate(double p) const {
-    const WallCurve& curve = task_.apparatus.curve;
-    const double share = (curve.deflection(p) - curve.deflection(0.0)) / rise_;
-    return 0.5 * (p / task_.highest_level + share);
-  }
-  double pressure(double wanted) const {
-    double low = 0.0, high = task_.highest_level;
-    for (int i = 0; i < 50; ++i) {
-      const double middle = 0.5 * (low + high);
-      (coordinate(middle) < wanted ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  }
-
   Levels start(int n) const {
     const double first = task_.vented ? 0.0 : task_.target.range.low;
-    Levels between;
-    const double from = coordinate(first), to = coordinate(task_.lowest_top);
-    for (int k = 0; k < n; ++k) between.push_back(pressure(from + (to - from) * k / (n - 1)));
-    between.front() = first;
-    between.back() = task_.lowest_top;
     return least_of({even_levels(n, first, task_.lowest_top, task_.vented),
-                     best_log_spaced(task_, n), std::move(between)});
+                     best_log_spaced(task_, n), at_.even(n, first, task_.lowest_top)});
   }
 
   /// The first of those with the lowest score.
@@ -165,12 +177,12 @@ class Placer {
     return candidates[static_cast<std::size_t>(least - scores.begin())];
   }
 
-  bool accept(Levels levels) {
+  bool accept(Levels levels, double gain) {
     monitor_.checkpoint();
     std::sort(levels.begin(), levels.end());
     if (levels.back() < task_.lowest_top) return false;
     const double value = score(levels);
-    if (!(value < (1.0 - kGain) * least_)) return false;
+    if (!(value - floor_ < (1.0 - gain) * (least_ - floor_))) return false;
     least_ = value;
     best_ = std::move(levels);
     return true;
@@ -181,10 +193,10 @@ class Placer {
     for (std::size_t k = first_; k < best_.size(); ++k) {
       for (const double way : {-1.0, 1.0}) {
         Levels levels = best_;
-        const double at = coordinate(levels[k]) + way * step;
-        levels[k] = std::clamp(pressure(at), 0.0, task_.highest_level);
+        const double at = at_.of(levels[k]) + way * step;
+        levels[k] = std::clamp(at_.pressure(at), 0.0, task_.highest_level);
         if (levels[k] <= task_.apparatus.gauge.noise.si()) continue;
-        if (!accept(std::move(levels))) continue;
+        if (!accept(std::move(levels), kGain)) continue;
         moved = true;
         break;
       }
@@ -200,7 +212,7 @@ class Placer {
         fewer.push_back(best_);
         fewer.back().erase(fewer.back().begin() + static_cast<Index>(k));
       }
-      if (!accept(with_one_more(least_of(fewer)))) return;
+      if (!accept(with_one_more(least_of(fewer)), kExchangeGain)) return;
     }
   }
 
@@ -211,7 +223,7 @@ class Placer {
       if (levels[k] > 0.0) places.push_back(levels[k]);
       const bool last = k + 1 == levels.size();
       if (last || levels[k + 1] - levels[k] < task_.apparatus.gauge.noise.si()) continue;
-      places.push_back(pressure(0.5 * (coordinate(levels[k]) + coordinate(levels[k + 1]))));
+      places.push_back(at_.pressure(0.5 * (at_.of(levels[k]) + at_.of(levels[k + 1]))));
     }
     std::vector<Levels> candidates;
     for (const double place : places) {
@@ -226,10 +238,10 @@ class Placer {
   std::vector<Apparatus> apparatuses_;
   int n_threads_;
   const Monitor& monitor_;
+  Coordinate at_;
   std::size_t first_;  ///< level that may move
-  double rise_ = 1.0;
   Levels best_;
-  double least_ = kInfinite;
+  double least_ = kInfinite, floor_ = 0.0;
 };
 
 }  // namespace
@@ -298,6 +310,25 @@ std::vector<double> best_log_spaced(const PlacementTask& task, int n) {
     best = std::move(levels);
   }
   return best;
+}
+
+std::vector<double> dense_levels(const PlacementTask& task) {
+  constexpr int kMany = 60;
+  const double first = task.vented ? 0.0 : task.target.range.low;
+  return Coordinate(task).even(kMany, first, task.highest_level);
+}
+
+Apparatus with_exact_labels(const Apparatus& apparatus) {
+  Apparatus exact = apparatus;
+  exact.gauge.noise = Pressure{};
+  return exact;
+}
+
+double score_floor(const PlacementTask& task, const std::vector<double>& levels) {
+  constexpr double kBelow = 0.99;
+  PlacementTask exact = task;
+  exact.apparatus = with_exact_labels(task.apparatus);
+  return std::min(score_levels(exact, dense_levels(task)), kBelow * score_levels(task, levels));
 }
 
 std::vector<double> place_levels(const PlacementTask& task, int n, int n_threads,

@@ -63,6 +63,14 @@ std::vector<double> best_log_spaced(const PlacementTask& task, int n);
 /// that no pressure is given up. For the three walls of the doubt the root mean square of theirs.
 double score_levels(const PlacementTask& task, const std::vector<double>& levels);
 
+/// Sixty levels over the range, and the apparatus with exact labels: what hardly any number of
+/// levels goes beyond.
+std::vector<double> dense_levels(const PlacementTask& task);
+Apparatus with_exact_labels(const Apparatus& apparatus);
+
+/// score_levels() of these, below that of `levels`: the part that placing them cannot change.
+double score_floor(const PlacementTask& task, const std::vector<double>& levels);
+
 /// Places n levels so that their score is least.
 ///
 /// Starts from the best of even, log-spaced and evenly deflected levels. The level that helps least

@@ -121,7 +121,9 @@ double averaging(double spacing, double half_wavelength) {
 
 std::vector<double> choose(const PlacementTask& task, const Demand& demand, const Wish& wish,
                            int usual, int n_threads, const Monitor& monitor) {
-  if (!wish.levels && demand.asks()) {
+  const bool searched = !wish.levels && demand.asks() &&
+                        demand.enough(with_exact_labels(task.apparatus), dense_levels(task));
+  if (searched) {
     const auto enough = [&](const std::vector<double>& levels) {
       return demand.enough(task.apparatus, levels);
     };
@@ -132,29 +134,33 @@ std::vector<double> choose(const PlacementTask& task, const Demand& demand, cons
   return tidy_levels(task, place_levels(task, n, n_threads, monitor));
 }
 
-LevelSet level_set(const std::string& name, const PlacementTask& task, std::vector<double> levels) {
-  LevelSet set{name, std::move(levels), {}, 0.0};
+LevelSet level_set(const std::string& name, const PlacementTask& task,
+                   const std::vector<SolvedRun>& runs, std::vector<double> levels) {
+  LevelSet set{name, std::move(levels), {}, 0.0, {}};
   set.over = uncertainty_over(task.apparatus, set.levels, task.target);
   set.drop = range_drop_uncertainty(task.apparatus, set.levels, task.target.range);
+  for (const SolvedRun& run : runs) {
+    set.runs.push_back(forecast_run(task.apparatus, set.levels, run));
+  }
   return set;
 }
 
-std::vector<LevelSet> other_sets(const PlacementTask& task, int n,
-                                 const twin::ScenarioDraft& draft) {
+std::vector<LevelSet> other_sets(const PlacementTask& task, const std::vector<SolvedRun>& runs,
+                                 int n, const twin::ScenarioDraft& draft) {
   // What one would do unplanned: from the lowest pressure to be read, or two decades.
   const double habit = std::max(task.target.range.low, 0.01 * task.lowest_top);
   std::vector<LevelSet> sets{
-      level_set(fmt::format("log-spaced from {}", pressure_text(habit)), task,
+      level_set(fmt::format("log-spaced from {}", pressure_text(habit)), task, runs,
                 log_spaced(n, habit, task.lowest_top, task.vented)),
-      level_set("log-spaced, best first", task, best_log_spaced(task, n)),
-      level_set("evenly spaced", task,
+      level_set("log-spaced, best first", task, runs, best_log_spaced(task, n)),
+      level_set("evenly spaced", task, runs,
                 even_levels(n, task.target.range.low, task.lowest_top, task.vented))};
   constexpr std::size_t kFewest = 5;
   if (draft.has_levels && draft.scenario.levels.size() >= kFewest) {
     std::vector<double> own;
     for (const Pressure level : draft.scenario.levels) own.push_back(level.si());
     const std::string name = fmt::format("the scenario's own {}", own.size());
-    sets.push_back(level_set(name, task, std::move(own)));
+    sets.push_back(level_set(name, task, runs, std::move(own)));
   }
   return sets;
 }
@@ -242,14 +248,11 @@ Plan make_plan(const twin::ScenarioDraft& draft, const Wish& wish, int n_threads
   plan.scenario = scenario;
   plan.scenario.levels.clear();
   for (const double level : levels) plan.scenario.levels.push_back(Pressure::from_si(level));
-  plan.planned = level_set("planned", task, std::move(levels));
+  plan.planned = level_set("planned", task, runs, std::move(levels));
   const int n = static_cast<int>(plan.planned.levels.size());
-  plan.others = other_sets(task, n, draft);
+  plan.others = other_sets(task, runs, n, draft);
   plan.readings = plan_readings(task, plan.planned.levels);
   plan.improvements = find_improvements(task, plan.planned.levels, scenario.wall);
-  for (const SolvedRun& run : runs) {
-    plan.runs.push_back(forecast_run(task.apparatus, plan.planned.levels, run));
-  }
   plan.smallest_gap = scenario.channel.height.si() + 1.5 * survey.curve().deflection(0.0);
   const WallReach reach{plan.half_wavelength, plan.maps.spacing};
   plan.answers = answer_wish(wish, task, demand, plan.planned.levels, scenario.wall, reach);

@@ -30,6 +30,7 @@ struct LevelSet {
   std::vector<double> levels;  ///< Pa, repeats included
   RangeUncertainty over;
   double drop = 0.0;  ///< Pa, uncertainty of the drop over the range
+  std::vector<RunForecast> runs;
 };
 
 /// What to do, and what to expect.
@@ -40,7 +41,6 @@ struct Plan {
   LevelSet planned;
   std::vector<LevelSet> others;  ///< of the same number: log-spaced, even; and the scenario's own
   std::vector<PlannedReading> readings;
-  std::vector<RunForecast> runs;
   std::vector<Improvement> improvements;
   std::vector<WishAnswer> answers;
   std::vector<std::string> notes;

@@ -49,16 +49,16 @@ TEST(Plan, TakesItsRangeFromTheRuns) {
   Wish wish;
   wish.levels = 9;
   const Plan plan = make_plan(small_draft(), wish, 1);
-  ASSERT_EQ(plan.runs.size(), 2u);
-  EXPECT_LT(plan.range.low, plan.runs[0].outlet);
-  EXPECT_GT(plan.range.high, plan.runs[1].inlet);
+  ASSERT_EQ(plan.planned.runs.size(), 2u);
+  EXPECT_LT(plan.range.low, plan.planned.runs[0].outlet);
+  EXPECT_GT(plan.range.high, plan.planned.runs[1].inlet);
   EXPECT_EQ(plan.planned.levels.size(), 9u);
   EXPECT_GE(plan.planned.levels.back(), plan.range.high);
   EXPECT_EQ(plan.scenario.levels.size(), 9u);
   EXPECT_NO_THROW(plan.scenario.validate());
   EXPECT_EQ(plan.others.size(), 4u);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_LE(plan.planned.over.rms, plan.others[i].over.rms);
-  for (const RunForecast& run : plan.runs) {
+  for (const RunForecast& run : plan.planned.runs) {
     EXPECT_LE(run.rms, run.worst);
     EXPECT_GT(run.rms_error, 0.0);
     EXPECT_GT(run.drop_uncertainty, 0.0);
@@ -156,7 +156,7 @@ TEST(Plan, GoesOnWithoutRunsThatChokeWhereTheRangeIsGiven) {
   EXPECT_NE(fault.find("Q1000"), std::string::npos) << fault;
   wish.highest = 10.0 * kPa;
   const Plan plan = make_plan(draft, wish, 1);
-  EXPECT_TRUE(plan.runs.empty());
+  EXPECT_TRUE(plan.planned.runs.empty());
   ASSERT_EQ(plan.notes.size(), 1u);
   EXPECT_NE(plan.notes[0].find("Q1000"), std::string::npos) << plan.notes[0];
 }
