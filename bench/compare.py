@@ -147,6 +147,12 @@ def time_linear(programs, size, n_maps, dropouts, repetitions, folder):
         row["numpy_over"] = statistics.median(
             numpy_["cpu_s"] / one["cpu_s"]
             for one, numpy_ in zip(answers["one"][1::2], answers["numpy"]))
+        saved = [folder / f"{name}.json" for name in ("one", "two")]
+        for name, file in zip(("one", "two"), saved):
+            ours.order(orders[name][1].format(kind))
+            ours.order(f"save {file}")
+        if saved[0].read_bytes() != saved[1].read_bytes():
+            sys.exit("one thread and two differ: a benchmark of wrong results is void")
         results = []
         for name, worker in (("ours", ours), ("numpy", numpy)):
             worker.order(f"save {folder / name}.json")

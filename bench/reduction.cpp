@@ -26,8 +26,8 @@ struct Reduced {
 };
 
 /// As pipeline::reduce_maps() with one thread, but for walls that lie elsewhere across the flow:
-/// they are found, not reduced once more in their place. Every second map, from the first, is
-/// hydrostatic.
+/// they are found, not reduced once more in their place; and but for patches of a false fringe
+/// order, which the other side does not look for. Every second map, from the first, is hydrostatic.
 Reduced reduce_all(const std::vector<std::string>& files, const ChannelFrame& frame) {
   Reduced all;
   std::vector<maps::ReducedMap> kinds[2];

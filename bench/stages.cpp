@@ -95,6 +95,23 @@ void despike(benchmark::State& state) {
   }
 }
 
+void rim_bend(benchmark::State& state) {
+  const OneMap& one = one_map();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        maps::fit_rim_bend(one.leveled, one.rim, 20.0 * nm, one.frame.length).coefficient);
+  }
+}
+
+/// On a map without patches: what every map costs.
+void fringe_order(benchmark::State& state) {
+  maps::ChannelMap map = one_map().leveled;
+  maps::flag_spikes(map, 20.0 * nm, 6.0);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(maps::mend_fringe_patches(map, 20.0 * nm, {}));
+  }
+}
+
 void width_average(benchmark::State& state) {
   const OneMap& one = one_map();
   const maps::LeveledMap leveled = maps::level_map(*one.map, one.frame, {}, "map");
@@ -180,7 +197,9 @@ BENCHMARK(read_gsf)->Unit(benchmark::kMillisecond);
 BENCHMARK(to_channel_frame)->Unit(benchmark::kMillisecond);
 BENCHMARK(level)->Unit(benchmark::kMillisecond);
 BENCHMARK(measure_noise)->Unit(benchmark::kMillisecond);
+BENCHMARK(rim_bend)->Unit(benchmark::kMillisecond);
 BENCHMARK(despike)->Unit(benchmark::kMillisecond);
+BENCHMARK(fringe_order)->Unit(benchmark::kMillisecond);
 BENCHMARK(width_average)->Unit(benchmark::kMillisecond);
 BENCHMARK(reduce_map)->Unit(benchmark::kMillisecond);
 BENCHMARK(fit_curves)->Unit(benchmark::kMillisecond);

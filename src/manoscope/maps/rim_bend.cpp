@@ -32,13 +32,15 @@ struct Samples {
   std::size_t count = 0;
 };
 
-/// Every n-th of the good pixels, 20 000 at most.
+/// Every n-th of the good pixels, fewer than 40 000.
 Samples choose_samples(const ChannelMap& map, const Flags2& rim, const RimBend& bend) {
   constexpr Index kMost = 20000;
   const Index nx = map.grid.nx, every = std::max<Index>(1, count_set(rim, 1) / kMost);
   Array1 u(nx);
   for (Index ix = 0; ix < nx; ++ix) u[ix] = bend.u(map.grid.x(ix));
   Samples samples;
+  samples.u.reserve(static_cast<std::size_t>(2 * kMost + kLanes * map.grid.nz));
+  samples.height.reserve(samples.u.capacity());
   Index to_pass = 0;
   for (Index iz = 0; iz < map.grid.nz; ++iz) {
     const FlagBits *const on_rim = &rim(iz, 0), *const flags = &map.flags(iz, 0);
