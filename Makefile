@@ -38,7 +38,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy check format format-check layers scripts tidy \
+.PHONY: all demo test bench docs accuracy planning check format format-check layers scripts tidy \
         tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -67,6 +67,12 @@ docs: all ## check links and commands of the documentation
 accuracy: all ## make, measure and judge every scenario at full size, write the tables of docs/
 	@$(install) tests
 	/usr/bin/python3 tools/accuracy_table.py $(BUILD)/manoscope docs $(wildcard $(PRACTICE)/S*)
+
+planning: ## try plans on virtual experiments, an hour of them, write the table of docs/planning.md
+	@$(install) build libraries tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) -j $(JOBS) --target manoscope coverage_campaign
+	/usr/bin/python3 tools/plan_table.py $(BUILD) docs
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 
