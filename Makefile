@@ -12,7 +12,8 @@ PACKAGES ?= yes
 PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
-FUZZ_FILES ?= 100000
+FU.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+        scripts tidy tidy-changed asan_FILES ?= 100000
 SECONDS_PER_READER ?= 30
 # Of `make coverage`: its table, walls of each of six samples, experiments with each wall.
 COVERAGE ?= $(BUILD)/coverage.csv
@@ -42,8 +43,8 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage check format format-check layers scripts tidy \
-        tidy-changed asan asan-all fuzz fuzz-coverage clean \
+.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+        scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
 all: ## build the program, build/manoscope (the default)
@@ -78,6 +79,12 @@ coverage: ## do the error bars hold? hundreds of virtual experiments; goes on wh
 	@cmake --build $(BUILD) --target coverage_campaign -j $(JOBS)
 	$(BUILD)/coverage_campaign -o $(COVERAGE) --walls $(WALLS) --seeds $(SEEDS)
 	@tools/coverage_table.py $(COVERAGE) --page docs/error-budget.md
+
+planning: ## try plans on virtual experiments, an hour of them, write the table of docs/planning.md
+	@$(install) build libraries tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) -j $(JOBS) --target manoscope coverage_campaign
+	/usr/bin/python3 tools/plan_table.py $(BUILD) docs
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 
@@ -126,7 +133,8 @@ fuzz: ## 100,000 damaged map files against every reader, under the sanitizers
 	@$(install) build libraries tests
 	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS) --target mutate_maps
-	@build-asan/tests/mutate_maps --files $(FUZZ_FILES) --jobs $(JOBS)
+	@build-asan/tests/mutate_maps --files $(FU.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+        scripts tidy tidy-changed asan_FILES) --jobs $(JOBS)
 
 fuzz-coverage: ## every reader under libFuzzer for SECONDS_PER_READER; needs clang
 	@$(install) build libraries tests fuzz
