@@ -211,7 +211,7 @@ Plan make_plan(const twin::ScenarioDraft& draft, const Wish& wish, int n_threads
   Plan plan;
   plan.name = scenario.name;
   plan.aim = wish.aim();
-  if (draft.water_assumed) plan.notes.push_back("no [fluid]: water, 1.0 mPa s, 998 kg/m3");
+  if (draft.water_assumed) plan.notes.emplace_back("no [fluid]: water, 1.0 mPa s, 998 kg/m3");
   const std::vector<SolvedRun> runs = try_runs(scenario, wish, n_threads, monitor, plan.notes);
   PressureSpan range = wanted_range(wish, runs);
   const double highest = highest_level(scenario, wish, range);
