@@ -21,12 +21,11 @@ WALLS ?= 14
 SEEDS ?= 5
 # Of `make tidy-changed`: how far back a source counts as changed.
 TIDY_COMMITS ?= 6
-# Much arithmetic and little memory work: minutes each under the sanitizers, which see the same code
-# on smaller grids in the other tests. `make asan-all` runs them, too.
-LONG_WALLS = ^FopplVonKarman|^SquareMembrane|^FitLaw.Pulls|^ChooseLaw.Takes|^FollowPressure|PlateStrip.IsMid|NistStrd|^PropagateByDraws
-LONG_TWINS = OfWallsThatDoNotShip|VariedPractice|^mutations$$|^cli\.|ThePumpPulses|ShippedOnesReach|TheBuckledOne|TheChannelChokes|TrueCurve.HardlyErrs
-LONG_READINGS = IsNeverFoundOnAPolishedFrame|^ReadNonlocal.HasBars|Practice.(Sensitivity|ResultFile)|Agree.*S1|^Origin.ThatIsWrong
-LONG_UNDER_ASAN = $(LONG_WALLS)|$(LONG_TWINS)|$(LONG_READINGS)
+# `make asan` leaves out tests that took longer than this in `make test`: ten times as long under the
+# sanitizers, which see the same code on smaller grids and in these.
+ASAN_SECONDS ?= 1
+ASAN_KEEPS = Measure.IsTheSameOnOne|LeavesSilentStations|Plan.LeavesOut|ReadExperiment.Answers
+ASAN_KEEPS := $(ASAN_KEEPS)|Hdf5Worker.Damaged|FrameTexture.TellsShifts|FollowPressure.OfABuckled
 
 # CMake takes these as the defaults of a new build folder and leaves one that exists as it is.
 export CMAKE_GENERATOR ?= Ninja
@@ -124,10 +123,11 @@ asan: ## the tests once more, under the address and undefined-behaviour sanitize
 	@$(install) build libraries figures tests
 	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS)
-	@ctest --preset asan -j $(JOBS) -E '$(LONG_UNDER_ASAN)'
+	@ctest --preset asan -j $(JOBS) \
+	  -E "$$(tools/long_tests.py $(BUILD) $(ASAN_SECONDS) '$(ASAN_KEEPS)')"
 
 asan-all: ## every test under the sanitizers: an hour
-	@$(MAKE) --no-print-directory asan LONG_UNDER_ASAN='^$$'
+	@$(MAKE) --no-print-directory asan ASAN_SECONDS=1e9
 
 fuzz: ## 100,000 damaged map files against every reader, under the sanitizers
 	@$(install) build libraries tests

@@ -30,9 +30,9 @@ struct RimBend {
   double height(double x, double z) const { return coefficient.dot(terms(x, z)); }
 };
 
-/// Fits it to the good rim pixels of a map leveled by its plane, of 40 000 and more to a part evenly
-/// chosen, 20 000 at least, with the weights of Tukey's biweight about the plane and then twice about
-/// the surface.
+/// Fits it to the good rim pixels of a map leveled by its plane, of 40 000 and more to a part
+/// evenly chosen, 20 000 at least, with the weights of Tukey's biweight about the plane and then
+/// twice about the surface.
 ///
 /// Zero where the rim's pixels do not determine it, as with a rim on two opposite sides only.
 /// @param rim    (nz, nx), 1 on the rim.
