@@ -86,8 +86,7 @@ std::vector<double> tidy_levels(const PlacementTask& task, const std::vector<dou
   Levels tidy = levels;
   const double noise = task.apparatus.gauge.noise.si();
   for (const double reach : {4.0, 3.0, 2.0, 1.0, 0.5}) {
-    Levels candidate =
-        merged(levels, reach * noise, static_cast<std::size_t>(task.repeats(levels.size())));
+    Levels candidate = merged(levels, reach * noise, static_cast<std::size_t>(task.most_repeats));
     if (candidate.back() < task.lowest_top || score_levels(task, candidate) > allowed) continue;
     tidy = std::move(candidate);
     break;
@@ -95,7 +94,7 @@ std::vector<double> tidy_levels(const PlacementTask& task, const std::vector<dou
   for (const double share : {0.5, 0.2, 0.1, 0.05, 0.02}) {
     Levels candidate = rounded(task, tidy, share);
     std::sort(candidate.begin(), candidate.end());
-    if (largest_repeats(candidate) > task.repeats(levels.size())) continue;
+    if (largest_repeats(candidate) > task.most_repeats) continue;
     if (score_levels(task, candidate) <= floor + kPrice * (allowed - floor)) return candidate;
   }
   return tidy;

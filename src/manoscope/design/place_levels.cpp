@@ -150,7 +150,7 @@ class Placer {
   /// By how much more levels than may be lie within a share of their mean distance, in sum.
   double crowding(const Levels& levels) const {
     const double apart = kApart / static_cast<double>(levels.size());
-    const auto more = static_cast<std::size_t>(task_.repeats(levels.size()));
+    const auto more = static_cast<std::size_t>(task_.most_repeats);
     double sum = 0.0;
     for (std::size_t k = 0; k + more < levels.size(); ++k) {
       const double distance = at_.of(levels[k + more]) - at_.of(levels[k]);
@@ -245,11 +245,6 @@ class Placer {
 };
 
 }  // namespace
-
-int PlacementTask::repeats(std::size_t n_levels) const {
-  constexpr int kApartLevels = 8;
-  return std::clamp(static_cast<int>(n_levels) / kApartLevels, 1, most_repeats);
-}
 
 double score_levels(const PlacementTask& task, const std::vector<double>& levels) {
   return score_apparatuses(task, possible_apparatuses(task), levels);

@@ -45,12 +45,9 @@ struct PlacementTask {
   /// Relative standard uncertainty of the pressures of the wall's curve before the experiment:
   /// levels are placed for this wall and for two whose pressures are so much higher and lower.
   double wall_doubt = 0.1;
-  /// Maps at one pressure or close to it, but no more than leave eight levels apart. An optimum
-  /// without these bounds has no more levels than a law of the wall has numbers, and would never
-  /// notice a wall that follows another.
+  /// Maps at one pressure or close to it. An optimum without this bound has no more levels than a
+  /// law of the wall has numbers, and would never notice a wall that follows another.
   int most_repeats = 2;
-
-  int repeats(std::size_t n_levels) const;
 };
 
 /// n levels: the first at 0 if vented, the others from `first` to `top` in equal ratios.

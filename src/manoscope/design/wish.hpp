@@ -39,7 +39,7 @@ struct Wish {
           "the scenario, else 20");
     visit("most-levels", most_levels, "largest number of calibration maps that is tried");
     visit("most-repeats", most_repeats,
-          "largest number of maps at one level; eight levels are kept apart in any case");
+          "largest number of maps at one level; many leave no level to notice another wall by");
     visit("flow-maps", flow_maps, "maps of one flow rate that are averaged");
     visit("minimise", minimise,
           "what of the uncertainty of p(x): worst, over the range, or rms, over the runs; auto: "
