@@ -24,6 +24,9 @@ PLACE_TOLERANCE_M = 1e-12  # of where a wall lies, along and across the flow
 # What the ratios ought to be; a miss is told and is no failure, for speed is no test.
 GOAL_NUMPY_REDUCTION, GOAL_NUMPY_ONE_PASS = 5.0, 10.0
 GOAL_OVER_READ, GOAL_TWO_THREADS = 1.5, 1.7
+GOAL_SCIPY_READING, GOAL_READING_MS = 10.0, 20.0
+# scipy's curves have other slopes at their knots than ours: of a standard uncertainty, and of it.
+READING_TOLERANCE, READING_UNCERTAINTY_TOLERANCE = 0.5, 0.2
 # What the wall and the twin promise, on one core that does nothing else.
 LIMITS = {"one wall state of S1": (0.5, "s"), "the whole virtual experiment": (60.0, "s"),
           "its peak memory": (2000.0, "MB")}
@@ -164,6 +167,39 @@ def time_linear(programs, size, n_maps, dropouts, repetitions, folder):
     return table
 
 
+def time_reading(programs, repetitions, folder):
+    """One run's p(x) and its covariance from a finished calibration, against scipy."""
+    inputs = folder / "reading.json"
+    workers = {"manoscope": Worker(programs / "bench_reading", inputs)}
+    workers["manoscope"].order("read")  # its inputs are written by then
+    workers["scipy"] = Worker(sys.executable, HERE / "reading.py", inputs)
+    workers["scipy"].order("read")
+    answers = {name: [] for name in workers}
+    for _ in range(repetitions):
+        for name, worker in workers.items():
+            answers[name].append(worker.order("read"))
+    found = []
+    for name, worker in workers.items():
+        worker.order(f"save {folder / name}-reading.json")
+        worker.close()
+        found.append(json.loads((folder / f"{name}-reading.json").read_text(encoding="utf-8")))
+    table = {name: {"cpu_s": statistics.median(answer["cpu_s"] for answer in given),
+                    "peak_MB": max(answer["peak_MB"] for answer in given)}
+             for name, given in answers.items()}
+    table["ratio_cpu"] = table["scipy"]["cpu_s"] / table["manoscope"]["cpu_s"]
+    ours, theirs = found
+    table["difference"] = statistics.median(
+        abs(a - b) / math.sqrt(v) for a, b, v in
+        zip(ours["pressure_Pa"], theirs["pressure_Pa"], ours["variance_Pa2"], strict=True))
+    table["uncertainty_difference"] = statistics.median(
+        abs(math.sqrt(b / a) - 1.0) for a, b in
+        zip(ours["variance_Pa2"], theirs["variance_Pa2"], strict=True))
+    if not (table["difference"] <= READING_TOLERANCE and
+            table["uncertainty_difference"] <= READING_UNCERTAINTY_TOLERANCE):
+        sys.exit(f"the two readings differ: {table}: a benchmark of wrong results is void")
+    return table
+
+
 def run_measured(*command):
     """Runs a program: wall seconds, processor seconds and peak memory of its largest process."""
     start = time.perf_counter()
@@ -273,6 +309,17 @@ def print_linear(table):
               f"{judged(gain, GOAL_TWO_THREADS)}")
 
 
+def print_reading(table):
+    print("\nReading one run, 974 stations and 25 levels, with its covariance; processor time, one "
+          "thread")
+    for name in ("manoscope", "scipy"):
+        print(f"{name:24}{1e3 * table[name]['cpu_s']:9.2f} ms{table[name]['peak_MB']:9.1f} MB")
+    print(f"manoscope, ms: {judged(1e3 * table['manoscope']['cpu_s'], GOAL_READING_MS, True)}\n"
+          f"scipy / manoscope: {judged(table['ratio_cpu'], GOAL_SCIPY_READING)}\n"
+          f"median difference {table['difference']:.2g} standard uncertainties, of the "
+          f"uncertainties {100 * table['uncertainty_difference']:.1f} %")
+
+
 def print_program(title, table):
     print(f"\n{title}")
     print(f"{'':24}{'wall s':>9}{'cpu s':>9}{'peak MB':>19}")
@@ -298,6 +345,8 @@ def main():
         reduction = time_reduction(arguments.programs, arguments.maps, arguments.repetitions,
                                    Path(name))
         print_reduction(reduction)
+        reading = time_reading(arguments.programs, 4 * arguments.repetitions, Path(name))
+        print_reading(reading)
         linear = []
         for size, n_maps, dropouts in (((1024, 192), arguments.maps, 0.0),
                                        ((1024, 192), arguments.maps, 0.01),
@@ -321,8 +370,8 @@ def main():
         print_program(f"manoscope measure: {measure['maps']} maps of 1024 x 192 to p(x), figures "
                       f"and report; median of {measure['repetitions']}", measure)
     if arguments.json:
-        figures = {"reduction": reduction, "linear": linear, "twin": twin, "wall_state_s": wall_state_s,
-                   "limits_kept": kept, "measure": measure}
+        figures = {"reduction": reduction, "reading": reading, "linear": linear, "twin": twin,
+                   "wall_state_s": wall_state_s, "limits_kept": kept, "measure": measure}
         arguments.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     if not kept:
         sys.exit("a limit is exceeded: see above")

@@ -300,7 +300,7 @@ std::optional<JointLabels> settle(const std::vector<Level>& levels, Labels kind,
 std::optional<JointLabels> settle_behind_snap(const std::vector<Level>& levels, Labels kind,
                                               const WallCurves* wall) {
   const Index first = level_after_snap(levels).value_or(0);
-  const auto branch = settle({levels.begin() + first, levels.end()}, kind, wall);
+  auto branch = settle({levels.begin() + first, levels.end()}, kind, wall);
   if (!branch || first == 0) return branch;
   const auto n = static_cast<Index>(levels.size()), n_branch = n - first;
   JointLabels joint{Array1(n), Matrix::Identity(n, n), Matrix::Zero(n, n)};

@@ -21,8 +21,7 @@ auto directions(const Matrix& modes) {
   Eigen::ColPivHouseholderQR<Matrix> factors(modes);
   factors.setThreshold(1e-9);
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostBins, kMostBins>;
-  const Columns all = factors.householderQ() * Columns::Identity(modes.rows(), factors.rank());
-  return all;
+  return Columns(factors.householderQ() * Columns::Identity(modes.rows(), factors.rank()));
 }
 
 }  // namespace

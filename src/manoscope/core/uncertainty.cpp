@@ -22,8 +22,8 @@ Matrix Uncertainty::covariance() const {
   for (Index j = 0; j < effects.cols(); ++j) {
     effects.col(j) = modes[static_cast<std::size_t>(j)].effect.matrix();
   }
-  Matrix result = effects * effects.transpose();
-  // A product by blocks may round the two halves differently.
+  Matrix result = Matrix::Zero(n, n);
+  result.selfadjointView<Eigen::Lower>().rankUpdate(effects);  // half the work of a product
   result.triangularView<Eigen::StrictlyUpper>() = result.transpose();
   result.diagonal() += independent.square().matrix();
   return result;

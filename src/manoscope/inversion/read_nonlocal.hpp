@@ -72,7 +72,8 @@ struct NonlocalReading {
 ///
 /// A station-by-station reading r(x) of the deflection (read_pressure()) is R[p](x) of
 /// WallResponse plus noise, both counted in the pressures of the model (NonlocalWall::offset). p is
-/// a natural cubic spline through the response's nodes that minimises
+/// a natural cubic spline through graded_nodes(), 9 % of the width apart at the ends, that
+/// minimises
 ///
 ///   (r - R[p])^T V^-1 (r - R[p]) + weight int p''(x)^2 / s(x) dx,   V = diag(v) + E E^T,
 ///

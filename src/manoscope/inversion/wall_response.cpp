@@ -52,15 +52,15 @@ std::vector<calibration::ConstitutiveCurve> curves_through(const Array1& pressur
 
 }  // namespace
 
-Array1 response_nodes(Length length, Length width) {
-  constexpr double kFine = 0.035, kCoarse = 0.12, kZone = 0.7, kGrowth = 0.2;  // widths, per width
+Array1 graded_nodes(Length length, Length width, double at_ends) {
+  constexpr double kCoarse = 0.12, kZone = 0.7, kGrowth = 0.2;  // widths, per width
   const double half = 0.5 * length.si(), w = width.si();
   std::vector<double> left{0.0};
   while (left.back() < half) {
     const double beyond = left.back() - kZone * w;
     left.push_back(left.back() + (beyond < 0.0
-                                      ? kFine * w
-                                      : std::min(kCoarse * w, kFine * w + kGrowth * beyond)));
+                                      ? at_ends * w
+                                      : std::min(kCoarse * w, at_ends * w + kGrowth * beyond)));
   }
   const double stretch = half / left.back();
   const auto n = static_cast<Index>(left.size());
@@ -70,6 +70,11 @@ Array1 response_nodes(Length length, Length width) {
     nodes[2 * n - 2 - i] = length.si() - nodes[i];
   }
   return nodes;
+}
+
+Array1 response_nodes(Length length, Length width) {
+  constexpr double kAtEnds = 0.035;  // widths
+  return graded_nodes(length, width, kAtEnds);
 }
 
 double half_response_wavelength(const Array1& nodes, const Eigen::VectorXd& answer, Index node) {

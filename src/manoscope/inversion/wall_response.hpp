@@ -11,8 +11,12 @@
 
 namespace manoscope::inversion {
 
-/// Positions along a wall at which p(x) is told: dense near both ends, where the wall is stiff.
-/// From 0 to the length, both included; 3.5 % of the width apart at the ends, 12 % inside.
+/// Positions along a wall from 0 to its length, both included: some share of the width apart within
+/// 0.7 widths of the ends, 12 % inside, with a smooth passage between; symmetric.
+/// @param at_ends  that share, in (0, 0.12].
+Array1 graded_nodes(Length length, Length width, double at_ends);
+/// Positions at which a wall's answer to p(x) is told: 3.5 % of the width apart near both ends,
+/// where it is stiff.
 Array1 response_nodes(Length length, Length width);
 
 /// Wavelength, m, of a ripple of p(x) of which the wall at a node shows half. 0 if it shows more of

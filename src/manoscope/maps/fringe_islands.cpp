@@ -1,7 +1,7 @@
 #include "manoscope/maps/fringe_islands.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
@@ -105,34 +105,120 @@ std::vector<Island> join_runs(const std::vector<Run>& runs) {
   return islands;
 }
 
-/// The wall beside a patch, as a straight line along one row.
-struct Beside {
-  double x, height, slope;
-  double at(Index ix) const { return height + slope * (static_cast<double>(ix) - x); }
+/// Pixels from one up to another, both included.
+struct Span {
+  Index first, last;
+  Index size() const { return last - first + 1; }
 };
 
-/// From the nearest five good pixels on either side, at most 15 away; none with fewer than three.
-std::optional<Beside> wall_beside(const ChannelMap& map, Index iz, Index first, Index last) {
-  constexpr std::size_t kFewestBeside = 3, kMostBeside = 5;
-  constexpr Index kReach = 15;
-  std::array<double, 2> place{}, height{};
-  for (const int side : {0, 1}) {
-    const Index from = side == 0 ? first : last, by = side == 0 ? -1 : 1;
-    std::vector<double> heights;
-    double sum = 0.0;
-    for (Index step = 1; step <= kReach && heights.size() < kMostBeside; ++step) {
-      const Index ix = from + by * step;
-      if (ix < 0 || ix >= map.grid.nx) break;
-      if (map.flags(iz, ix) != 0) continue;
-      heights.push_back(map.height(iz, ix));
-      sum += static_cast<double>(ix);
+/// Heights of one row over a span, missing ones between good neighbours on straight lines; none if
+/// more than kLongestGap are missing in a row, or the first or last.
+std::optional<Array1> filled_row(const ChannelMap& map, Index iz, const Span& span) {
+  constexpr Index kLongestGap = 6;
+  Array1 row(span.size());
+  Index last_good = -1;
+  for (Index i = 0; i < span.size(); ++i) {
+    if (map.flags(iz, span.first + i) != 0) continue;
+    row[i] = map.height(iz, span.first + i);
+    if (i - last_good > kLongestGap + 1 || (last_good < 0 && i > 0)) return std::nullopt;
+    for (Index k = last_good + 1; k < i; ++k) {
+      const double share = static_cast<double>(k - last_good) / static_cast<double>(i - last_good);
+      row[k] = row[last_good] + share * (row[i] - row[last_good]);
     }
-    if (heights.size() < kFewestBeside) return std::nullopt;
-    place[static_cast<std::size_t>(side)] = sum / static_cast<double>(heights.size());
-    height[static_cast<std::size_t>(side)] = numerics::median(heights);
+    last_good = i;
   }
-  return Beside{place[0], height[0], (height[1] - height[0]) / (place[1] - place[0])};
+  return last_good == span.size() - 1 ? std::optional(row) : std::nullopt;
 }
+
+/// How the wall rises along the flow about a box of pixels, as the rows above and below show it.
+class WallAround {
+ public:
+  WallAround(const ChannelMap& map, Index top, Index bottom, const Span& box)
+      : map_(map),
+        box_(box),
+        span_{std::max<Index>(0, box.first - kReach),
+              std::min(map.grid.nx - 1, box.last + kReach)} {
+    add_shape(top - 1, -1);
+    add_shape(bottom + 1, 1);
+  }
+
+  /// The wall's heights along a row of the box: a straight line and the shapes of the rows above
+  /// and below, each with a factor, through the good pixels beside the box. None with fewer than
+  /// three on either side.
+  std::optional<Array1> row(Index iz) const {
+    std::vector<Index> beside;
+    Index n_before = 0;
+    for (Index i = 0; i < span_.size(); ++i) {
+      const Index ix = span_.first + i;
+      if ((ix >= box_.first && ix <= box_.last) || map_.flags(iz, ix) != 0) continue;
+      beside.push_back(i);
+      n_before += ix < box_.first ? 1 : 0;
+    }
+    const auto n = static_cast<Index>(beside.size());
+    if (n_before < kFewestBeside || n - n_before < kFewestBeside) return std::nullopt;
+    Eigen::VectorXd factors = fit(iz, beside);
+    std::vector<double> off;
+    for (const Index i : beside) off.push_back(std::abs(height(iz, i) - terms(i).dot(factors)));
+    const double most = kOutlier * numerics::median(off);
+    std::vector<Index> kept;
+    for (std::size_t k = 0; k < off.size(); ++k) {
+      if (std::abs(height(iz, beside[k]) - terms(beside[k]).dot(factors)) <= most) {
+        kept.push_back(beside[k]);
+      }
+    }
+    if (static_cast<Index>(kept.size()) > 2 * n_terms()) factors = fit(iz, kept);
+    Array1 wall(box_.size());
+    for (Index i = 0; i < box_.size(); ++i) {
+      wall[i] = terms(box_.first - span_.first + i).dot(factors);
+    }
+    return wall;
+  }
+
+ private:
+  static constexpr Index kReach = 15;  // pixels beside the box that are looked at
+  static constexpr Index kFewestBeside = 3;
+  static constexpr double kOutlier = 5.0;  // median residuals: beyond, another patch or a spike
+
+  /// Mean of the nearest rows on one side of the box.
+  void add_shape(Index iz, Index by) {
+    constexpr int kRows = 4, kTried = 12;
+    Array1 sum = Array1::Zero(span_.size());
+    int n = 0;
+    for (int tried = 0; tried < kTried && n < kRows; ++tried, iz += by) {
+      if (iz < 0 || iz >= map_.grid.nz) break;
+      const auto filled = filled_row(map_, iz, span_);
+      if (!filled) continue;
+      sum += *filled;
+      ++n;
+    }
+    if (n == 0) return;
+    const double rise = sum.maxCoeff() - sum.minCoeff();
+    if (rise > 0.0) shapes_.push_back((sum - sum.minCoeff()) / rise);
+  }
+  double height(Index iz, Index i) const { return map_.height(iz, span_.first + i); }
+  Index n_terms() const { return 2 + static_cast<Index>(shapes_.size()); }
+  Eigen::VectorXd terms(Index i) const {
+    Eigen::VectorXd all(n_terms());
+    all[0] = 1.0;
+    all[1] = static_cast<double>(i) / static_cast<double>(span_.size());
+    for (std::size_t k = 0; k < shapes_.size(); ++k) all[2 + static_cast<Index>(k)] = shapes_[k][i];
+    return all;
+  }
+  Eigen::VectorXd fit(Index iz, const std::vector<Index>& places) const {
+    const auto n = static_cast<Index>(places.size());
+    Matrix design(n, n_terms());
+    Eigen::VectorXd values(n);
+    for (Index k = 0; k < n; ++k) {
+      design.row(k) = terms(places[static_cast<std::size_t>(k)]);
+      values[k] = height(iz, places[static_cast<std::size_t>(k)]);
+    }
+    return design.colPivHouseholderQr().solve(values);
+  }
+
+  const ChannelMap& map_;
+  Span box_, span_;
+  std::vector<Array1> shapes_;
+};
 
 /// What is to be done with the pixels about one island.
 struct Plan {
@@ -145,14 +231,16 @@ Plan plan_island(const ChannelMap& map, const Island& island, double jump, doubl
   const Index left = std::max<Index>(0, island.left - kAround);
   const Index right = std::min(map.grid.nx - 1, island.right + kAround);
   const Index bottom = std::min(map.grid.nz - 1, island.bottom + kAround);
-  for (Index iz = std::max<Index>(0, island.top - kAround); iz <= bottom; ++iz) {
-    const auto wall = wall_beside(map, iz, left, right);
+  const Index top = std::max<Index>(0, island.top - kAround);
+  const WallAround around_box(map, top, bottom, {left, right});
+  for (Index iz = top; iz <= bottom; ++iz) {
+    const auto wall = around_box.row(iz);
     const bool around = iz < island.top || iz > island.bottom;
     if (!wall && around) continue;  // hidden, and none of the runs' rows
     for (Index ix = left; ix <= right; ++ix) {
       if (map.flags(iz, ix) != 0) continue;
       const Index here = iz * map.grid.nx + ix;
-      const double off = wall ? map.height(iz, ix) - wall->at(ix) : 0.5 * jump;
+      const double off = wall ? map.height(iz, ix) - (*wall)[ix - left] : 0.5 * jump;
       if (std::abs(off) <= allowed) {
         ++plan.n_wall;
       } else if (std::abs(off - jump) <= allowed) {

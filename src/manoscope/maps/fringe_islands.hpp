@@ -20,13 +20,15 @@ struct FringePatches {
 /// Along the flow a wall changes slowly. A patch begins on a row with a jump by a whole number of
 /// half wavelengths and ends, within 24 pixels, with the same jump back or in missing pixels; rows
 /// that touch, or lie up to six apart (where missing pixels hide its ends), make one patch. Each of
-/// its pixels, and those two pixels around, is then held against the straight line between the
-/// medians of the nearest five good pixels on either side of the patch: those a whole number of
-/// half wavelengths off it are lifted, those near it stay, others are flagged. A patch whose
-/// surroundings do not follow that line (near a clamped end) is left alone.
+/// its pixels, and those two pixels around, is then held against the wall's course along its row: a
+/// straight line and the mean courses of the rows next above and below the patch, each with a
+/// factor, fitted to the good pixels within fifteen on either side. Those a whole number of half
+/// wavelengths off it are lifted, those near it stay, others are flagged. A patch whose
+/// surroundings do not follow such a course is left alone.
 ///
-/// So a patch is found that lies across the clamped side or on a steep flank, where the map's own
-/// bend across the flow hides a part of its border.
+/// So a patch is found that lies across the clamped side, on a steep flank, where the map's own
+/// bend across the flow hides a part of its border, or near an end, where the wall bends along the
+/// flow.
 ///
 /// Source: our own. Validity: noise below an eighth of the wavelength; patches up to 24 pixels long
 /// along the flow and four pixels large.

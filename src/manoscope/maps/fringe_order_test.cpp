@@ -94,6 +94,23 @@ TEST(FringePatches, AreMendedWhereverTheyLie) {
   }
 }
 
+TEST(FringePatches, AreMendedWhereTheWallBendsAlongTheFlow) {
+  // Within 1 mm of the ends, where the wall bends by more than a patch's height over its length.
+  const std::vector<Disc> discs{
+      {70, 62, 9, 1}, {120, 52, 6, -1}, {40, 90, 10, 1}, {96, 965, 10, 1}, {140, 978, 7, -1}};
+  for (const double crest : {10e-6, 30e-6}) {
+    for (std::uint64_t trial = 20; trial < 24; ++trial) {
+      Scene s = scene(crest, kNoise.si(), 0.02, trial);
+      for (const Disc& disc : discs) add(s.map, disc);
+      flag_spikes(s.map, kNoise, 6.0);
+      const FringePatches found = mend_fringe_patches(s.map, kNoise, kWavelength);
+      EXPECT_EQ(wrong_pixels(s, 130e-9), 0) << crest << ' ' << trial;
+      EXPECT_GE(found.mended, 5);
+      EXPECT_LT(found.flagged_pixels, 110);  // one in ten of 1100
+    }
+  }
+}
+
 TEST(FringePatches, AreMendedWhereTheyRunIntoMissingPixels) {
   Scene s = scene(30e-6, kNoise.si(), 0.0, 6);
   add(s.map, {60, 300, 8, 1});
