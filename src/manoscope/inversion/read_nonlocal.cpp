@@ -27,7 +27,7 @@ constexpr double kEndShare = 0.35;    // half-response wavelengths: the same, of
 constexpr int kMostIterations = 14, kFreeIterations = 4;
 constexpr double kStepShare = 0.05;  // of the local reading's mean standard uncertainty
 constexpr double kNearly = 10.0;     // times that: what the last step may leave, in the bars
-constexpr double kFiner = 16.0;      // half a ripple, as weight
+constexpr double kFiner = 4.0;       // a ripple finer by the square root of 2, as weight
 constexpr double kHuber = 2.5;       // pulls beyond count as if they grew no more (Huber 1964)
 constexpr Index kFewestStations = 20;
 

@@ -28,7 +28,7 @@ struct Run {
 struct Island {
   Index top, bottom, left, right;
   int order;
-  Index n_pixels = 0;  ///< of the runs
+  std::vector<Run> runs;
 };
 
 /// The whole number of half wavelengths that a jump is; 0 if it is none.
@@ -94,13 +94,13 @@ std::vector<Island> join_runs(const std::vector<Run>& runs) {
     };
     const auto found = std::find_if(islands.begin(), islands.end(), touches);
     if (found == islands.end()) {
-      islands.push_back({run.iz, run.iz, run.first, run.last, run.order, run.last - run.first + 1});
+      islands.push_back({run.iz, run.iz, run.first, run.last, run.order, {run}});
       continue;
     }
     found->bottom = run.iz;
     found->left = std::min(found->left, run.first);
     found->right = std::max(found->right, run.last);
-    found->n_pixels += run.last - run.first + 1;
+    found->runs.push_back(run);
   }
   return islands;
 }
@@ -222,8 +222,21 @@ class WallAround {
 
 /// What is to be done with the pixels about one island.
 struct Plan {
-  std::vector<Index> lift, flag;
-  Index n_wall = 0;  ///< pixels that lie where the wall is
+  std::vector<Index> lift, flag;  ///< ascending
+  Index n_wall = 0;               ///< pixels that lie where the wall is
+
+  /// Pixels of those runs that are to be lifted for the most part. The others are none: noise
+  /// passed for a jump, and what follows it up to the next missing pixel for a patch.
+  Index count_true(const std::vector<Run>& runs, Index nx) const {
+    Index n = 0;
+    for (const Run& run : runs) {
+      const auto from = std::lower_bound(lift.begin(), lift.end(), run.iz * nx + run.first);
+      const auto to = std::upper_bound(from, lift.end(), run.iz * nx + run.last);
+      const Index length = run.last - run.first + 1;
+      if (2 * (to - from) >= length) n += length;
+    }
+    return n;
+  }
 };
 
 Plan plan_island(const ChannelMap& map, const Island& island, double jump, double allowed) {
@@ -261,16 +274,16 @@ FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>
   FringePatches found;
   const double half = 0.5 * wavelength.si();
   for (const Island& island : join_runs(find_runs(map, jumps, half, noise.si()))) {
-    if (island.n_pixels < kFewest) continue;
     const double jump = island.order * half;
     // A third of the jump keeps both kinds apart whatever the noise.
     const double allowed = std::min(half / 3.0, std::max(kWhole * half, kNoises * noise.si()));
     const Plan plan = plan_island(map, island, jump, allowed);
     const auto n_unclear = static_cast<double>(plan.flag.size());
     const auto n_clear = static_cast<double>(plan.n_wall) + static_cast<double>(plan.lift.size());
-    // Most runs' pixels must be where the jump takes them, and the rest where the wall is.
-    if (n_unclear > kMostUnclear * n_clear ||
-        static_cast<double>(plan.lift.size()) < 0.8 * static_cast<double>(island.n_pixels)) {
+    // What a run holds must be where the jump takes it, and the rest where the wall is.
+    const Index n_patch = plan.count_true(island.runs, map.grid.nx);
+    if (n_patch < kFewest || n_unclear > kMostUnclear * n_clear ||
+        static_cast<double>(plan.lift.size()) < 0.8 * static_cast<double>(n_patch)) {
       continue;
     }
     for (const Index pixel : plan.lift) map.height.data()[pixel] -= jump;
