@@ -91,9 +91,9 @@ struct NonlocalReading {
 ///
 /// Uncertainty: the spline's posterior, as error modes ("reading" for pixel noise, times the number
 /// of neighbouring stations whose residuals go together; "smoothness" for the rest); where the
-/// finest ripple is in force, what half of it would change; every mode of the station-by-station
-/// reading carried through the same linear estimate; and model_error times the correction, one
-/// variable for each half of the channel ("wall model").
+/// finest ripple is in force, what one finer by the square root of 2 would change; every mode of
+/// the station-by-station reading carried through the same linear estimate; and model_error times
+/// the correction, one variable for each half of the channel ("wall model").
 ///
 /// Stations without an answer stay without. Stations nearer to an end than 8 % of the width do not
 /// take part and have no answer (`insensitive`): the wall hardly rises there.
