@@ -12,10 +12,10 @@ PACKAGES ?= yes
 PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
-FU.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+FU.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
         scripts tidy tidy-changed asan_FILES ?= 100000
 SECONDS_PER_READER ?= 30
-# Of `make coverage`: its table, walls of each of six samples, experiments with each wall.
+# Of `make coverage` and `make goals`: its table, walls of each of six samples, experiments with each wall.
 COVERAGE ?= $(BUILD)/coverage.csv
 WALLS ?= 14
 SEEDS ?= 5
@@ -42,7 +42,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
         scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -78,6 +78,22 @@ coverage: ## do the error bars hold? hundreds of virtual experiments; goes on wh
 	@cmake --build $(BUILD) --target coverage_campaign -j $(JOBS)
 	$(BUILD)/coverage_campaign -o $(COVERAGE) --walls $(WALLS) --seeds $(SEEDS)
 	@tools/coverage_table.py $(COVERAGE) --page docs/error-budget.md
+
+goals: ## what a measurement reaches against what it was to reach: a table of docs/error-budget.md
+	@$(install) build libraries figures tests bench
+	@$(configure) -DMANOSCOPE_TESTS=ON -DMANOSCOPE_BENCH=ON
+	@cmake --build $(BUILD) -j $(JOBS) --target coverage_campaign coverage_test membrane_dic_test \
+	  numerics_test bench_reading
+	$(BUILD)/coverage_campaign -o $(COVERAGE) --walls $(WALLS) --seeds $(SEEDS)
+	@mkdir -p $(BUILD)/goals
+	@$(BUILD)/tests/coverage_test --gtest_filter='*PixelLimit*' --gtest_output=json:$(BUILD)/goals/pixels
+	@$(BUILD)/tests/membrane_dic_test --gtest_output=json:$(BUILD)/goals/membranes
+	@$(BUILD)/tests/numerics_test --gtest_filter='*NistStrd*:*GumH*:*Jcgm101*' \
+	  --gtest_output=json:$(BUILD)/goals/numerics
+	@/usr/bin/python3 bench/compare.py --programs $(BUILD)/bench --manoscope $(BUILD)/manoscope \
+	  --reading-only --json $(BUILD)/goals/bench
+	@/usr/bin/python3 tools/goals_table.py $(COVERAGE) $(BUILD)/goals/bench $(BUILD)/goals/pixels \
+	  $(BUILD)/goals/membranes $(BUILD)/goals/numerics --page docs/error-budget.md
 
 planning: ## try plans on virtual experiments, an hour of them, write the table of docs/planning.md
 	@$(install) build libraries tests
@@ -133,7 +149,7 @@ fuzz: ## 100,000 damaged map files against every reader, under the sanitizers
 	@$(install) build libraries tests
 	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS) --target mutate_maps
-	@build-asan/tests/mutate_maps --files $(FU.PHONY: all demo test bench docs accuracy coverage planning check format format-check layers \
+	@build-asan/tests/mutate_maps --files $(FU.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
         scripts tidy tidy-changed asan_FILES) --jobs $(JOBS)
 
 fuzz-coverage: ## every reader under libFuzzer for SECONDS_PER_READER; needs clang

@@ -337,11 +337,19 @@ def main():
     parser.add_argument("--repetitions", type=int, default=7)
     parser.add_argument("--reductions-only", action="store_true",
                         help="leave out the twin and the whole measurement")
+    parser.add_argument("--reading-only", action="store_true", help="the reading against scipy alone")
     parser.add_argument("--json", type=Path, help="also write every figure here")
     arguments = parser.parse_args()
     arguments.manoscope = arguments.manoscope.resolve()
     arguments.programs = arguments.programs.resolve()
     with tempfile.TemporaryDirectory(prefix="manoscope-bench-") as name:
+        if arguments.reading_only:
+            reading = time_reading(arguments.programs, 4 * arguments.repetitions, Path(name))
+            print_reading(reading)
+            if arguments.json:
+                arguments.json.write_text(json.dumps({"reading": reading}, indent=1) + "\n",
+                                          encoding="utf-8")
+            return
         reduction = time_reduction(arguments.programs, arguments.maps, arguments.repetitions,
                                    Path(name))
         print_reduction(reduction)

@@ -122,6 +122,9 @@ TEST_P(MembraneDic, LeavingOnePressureOutReadsItBackAsWellAsAMonotoneCubic) {
   EXPECT_LE(monotone.unanswered, 0.01 * (monotone.n + monotone.unanswered));
   // Errors of a map are common to its pixels, so that 18 maps tell little more than this.
   EXPECT_GE(monotone.covered, 0.9 * monotone.n);
+  RecordProperty("rms_hPa", std::to_string(monotone.rms_hPa()));
+  RecordProperty("reference_hPa", std::to_string(reference_hPa));
+  RecordProperty("covered", std::to_string(static_cast<double>(monotone.covered) / monotone.n));
   std::printf(
       "specimen %d: rms %.2f hPa over %d readings (%d without answer, coverage %.2f); pixels "
       "not monotone: %d readings, rms %.2f hPa, %d without answer; median of a map: rms %.2f "

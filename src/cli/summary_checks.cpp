@@ -86,7 +86,12 @@ json checks_json(const Measurement& m) {
       {"left_out",
        {{"rms_Pa", number(left_out.rms)}, {"pull_rms", number(left_out.pull)}, {"levels", levels}}},
       {"shapes", shapes},
-      {"repeats", repeats}};
+      {"repeats", repeats},
+      {"sweeps",
+       {{"maps_up", number(m.sweep_up_maps)},
+        {"maps_down", number(m.sweep_down_maps)},
+        {"difference_Pa", number(m.sweep_difference)},
+        {"uncertainty_Pa", number(m.sweep_difference_uncertainty)}}}};
 }
 
 json advice_json(const Measurement& m) {

@@ -30,6 +30,15 @@ void store_repeats(const experiment::Experiment& experiment, const ReducedExperi
                    const std::vector<RunFindings>& findings, const inversion::Stretch& stretch,
                    results::Measurement& measurement);
 
+/// Levels on the way down against those on the way up, if the list goes both ways.
+/// @param levels  in the order of the list.
+void store_sweeps(const std::vector<calibration::Level>& levels,
+                  const calibration::FitCurvesOptions& options, const inversion::Stretch& stretch,
+                  results::Measurement& measurement);
+
+/// A difference between both ways beyond chance (once in 10^3).
+std::vector<std::string> doubt_sweeps(const results::Measurement& measurement);
+
 /// Repeats that scatter by more than their bars, beyond chance (once in 10^3).
 std::vector<std::string> doubt_repeats(const results::Measurement& measurement);
 

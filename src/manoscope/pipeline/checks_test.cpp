@@ -70,6 +70,36 @@ TEST(StoreRepeats, ComparesMapsOfOneLevel) {
   EXPECT_GT(m.repeat_p_value[0], 0.05);
 }
 
+/// Levels listed up and down again, every second one on the way down; their labels higher by `lag`.
+std::string up_and_down(const twin::Scenario& scenario, const twin::VirtualExperiment& made,
+                        Pressure lag) {
+  std::vector<twin::LevelTruth> up, down;
+  for (std::size_t k = 0; k < made.truth.levels.size(); ++k) {
+    (k % 2 == 0 ? up : down).push_back(made.truth.levels[k]);
+  }
+  for (auto level = down.rbegin(); level != down.rend(); ++level) {
+    level->label = level->label + lag;
+    up.push_back(*level);
+  }
+  return twin::hydrostatic_csv(scenario, up);
+}
+
+TEST(StoreSweeps, TellsAWallThatDiffersOnTheWayDown) {
+  TestExperiment test;
+  const Measurement one_way = test.measure();
+  EXPECT_EQ(one_way.sweep_down_maps, 0.0);
+  EXPECT_TRUE(std::isnan(one_way.sweep_difference));
+  for (const Pressure lag : {Pressure{}, 100.0 * Pa}) {
+    test.twin.hydrostatic_csv = up_and_down(test.scenario, test.twin, lag);
+    const Measurement m = test.measure();
+    EXPECT_GE(m.sweep_down_maps, 5.0);
+    EXPECT_NEAR(m.sweep_difference, lag.si(), 4.0 * m.sweep_difference_uncertainty);
+    // Labels of 10 Pa on both ways, and curves through half of the levels.
+    EXPECT_LT(m.sweep_difference_uncertainty, 20.0);
+    EXPECT_EQ(warns_of(m, "on the way down"), lag > Pressure{}) << all_warnings(m);
+  }
+}
+
 TEST(StoreLeftOut, HasPullsOfAboutUnitWidthButWhereTheWallTurns) {
   std::vector<double> pulls;
   for (const std::uint64_t seed : {1, 2, 3}) {

@@ -270,10 +270,12 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_left_out(inversion::leave_one_out(curves, options.curves, stretch), measurement);
   store_shapes(experiment, reduced, curves, stretch, n_threads, measurement);
   store_repeats(experiment, reduced, curves, findings, stretch, measurement);
+  store_sweeps(levels, options.curves, stretch, measurement);
   measurement.warnings =
       find_doubts(experiment, place, reduced, curves,
                   doubtful_levels(curves, options.curves, stretch), runs, findings);
-  for (const auto& doubts : {doubt_shapes(experiment, measurement), doubt_repeats(measurement)}) {
+  for (const auto& doubts : {doubt_shapes(experiment, measurement), doubt_repeats(measurement),
+                             doubt_sweeps(measurement)}) {
     measurement.warnings.insert(measurement.warnings.end(), doubts.begin(), doubts.end());
   }
   if (!wall && !runs.empty() && options.nonlocal.nonlocal && experiment.wall &&

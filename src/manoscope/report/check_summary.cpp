@@ -88,6 +88,15 @@ std::string repeat_line(const Measurement& m) {
                             count(n_apart, "state scatters", "states scatter"));
 }
 
+std::string sweep_line(const Measurement& m) {
+  if (!std::isfinite(m.sweep_difference)) return {};
+  return fmt::format(
+      "Up and down: {:.0f} maps on the way down differ from the way up by {:+.1f} ± {:.1f} Pa, "
+      "{:.1f} of its bar.",
+      m.sweep_down_maps, m.sweep_difference, m.sweep_difference_uncertainty,
+      std::abs(m.sweep_difference) / m.sweep_difference_uncertainty);
+}
+
 }  // namespace
 
 LeftOutSummary summarise_left_out(const Measurement& m) {
@@ -150,7 +159,7 @@ RepeatSummary summarise_repeats(const Measurement& m) {
 
 std::vector<std::string> check_lines(const Measurement& m) {
   std::vector<std::string> lines;
-  for (std::string line : {left_out_line(m), shape_line(m), repeat_line(m)}) {
+  for (std::string line : {left_out_line(m), shape_line(m), repeat_line(m), sweep_line(m)}) {
     if (!line.empty()) lines.push_back(std::move(line));
   }
   return lines;

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
 
 namespace manoscope::results {
+
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// What a measurement tells of its own trustworthiness without knowing the truth. Part of
 /// Measurement: plain SI arrays whose names are those of the file.
@@ -35,6 +38,11 @@ struct Checks {
   std::vector<int> repeat_maps;     ///< (n_p)
   Array1 repeat_scatter;            ///< (n_p) Pa, standard deviation of the maps' mean pressures
   Array1 repeat_chi_square, repeat_dof, repeat_p_value;  ///< (n_p)
+
+  // Levels on the way down against those on the way up. NaN where there are too few.
+  double sweep_up_maps = 0.0, sweep_down_maps = 0.0;  ///< numbers of maps
+  double sweep_difference = kNoNumber;  ///< Pa, down minus up where the wall deflects alike
+  double sweep_difference_uncertainty = kNoNumber;  ///< Pa, standard
 
   /// (n_s, n_r) Pa2: variance of the extracted drop by source of uncertainty.
   Array2 extracted_drop_variance;

@@ -124,6 +124,24 @@ std::vector<Variable> check_variables() {
        "1",
        "how often chance makes a chi-square as large",
        &M::repeat_p_value},
+
+      {"sweep_up_maps", {}, "1", "level maps reached by a rising pressure", &M::sweep_up_maps},
+      {"sweep_down_maps",
+       {},
+       "1",
+       "level maps reached by a falling pressure and held against those; 0: too few of either",
+       &M::sweep_down_maps},
+      {"sweep_difference",
+       {},
+       "Pa",
+       "pressure on the way down minus that on the way up at which the wall deflects alike",
+       &M::sweep_difference,
+       "sweep_difference_uncertainty"},
+      {"sweep_difference_uncertainty",
+       {},
+       "Pa",
+       "standard uncertainty of that difference, k = 1",
+       &M::sweep_difference_uncertainty},
   };
 }
 
