@@ -57,7 +57,7 @@ int degree_for_gap(double width_over_gap);
 ///
 /// Accuracy (held by tests): resistance of rectangles of 0.05 <= h/w <= 1 within 5e-9 of the series
 /// (1e-9 up to 0.2), beta and alpha within 1e-8; a curved roof with an exact solution within 2e-8;
-/// shears of floor and roof within 2e-5 (5e-5 at h/w = 1), of the sides 1e-4; thinner gaps, h/w =
+/// shears of floor and roof within 2e-5 (5e-5 at h/w = 1), of the sides 3e-4; thinner gaps, h/w =
 /// 0.01, within 1e-6. A half circle, whose roof meets the floor, is within 2e-7. Validity:
 /// developed flow, roof single-valued in z with a smooth h. One symmetric section takes about 5 ms;
 /// one that is not symmetric has twice the unknowns.
