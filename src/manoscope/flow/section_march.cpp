@@ -1,0 +1,230 @@
+#include "manoscope/flow/section_march.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/flow/section_stepper.hpp"
+
+namespace manoscope::flow {
+namespace {
+
+constexpr const char* kWhere = "marching model on sections";
+constexpr double kSlowLayers = 5.0;  ///< c of the docstring of march_section()
+/// Length over which a correction of the lateral pressure is smoothed, in heights of the channel: a
+/// thin gap has no finer one, and without it roughness of the roof grows from sweep to sweep.
+constexpr double kSmoothing = 0.25;
+
+/// The lateral pressure as cosines: p2 = sum over j >= 1 of amplitude_j(x) cos(j pi s).
+class LateralPressure {
+ public:
+  LateralPressure(const EvenBasis& across, double half_width, int modes, const Array1& x,
+                  double smoothing)
+      : smoothing_(smoothing), x_(x), waves_(modes), cosines_(modes, across.nodes.size()) {
+    for (int j = 0; j < modes; ++j) {
+      waves_(j) = (j + 1) * std::numbers::pi / half_width;
+      cosines_.row(j) = ((j + 1) * std::numbers::pi * across.nodes).cos().transpose().matrix();
+    }
+    // An odd polynomial in s to its first sines: 2 int_0^1 f sin(j pi s) ds.
+    const QuadratureRule rule = gauss_legendre(40);
+    const Array1 s = 0.5 * (1.0 + rule.nodes);
+    const Index n_odd = across.odd_transform.rows();
+    Matrix odd(s.size(), n_odd);
+    for (Index k = 0; k < n_odd; ++k) {
+      odd.col(k) = ((2.0 * static_cast<double>(k) + 1.0) * s.acos()).cos().matrix();
+    }
+    Matrix sines(modes, s.size());
+    for (int j = 0; j < modes; ++j) {
+      sines.row(j) = (rule.weights * ((j + 1) * std::numbers::pi * s).sin()).transpose().matrix();
+    }
+    to_sines_ = sines * odd * across.odd_transform;
+    amplitudes_ = Matrix::Zero(x.size(), modes);
+  }
+
+  /// p2 at the nodes across of a station, Pa.
+  Array1 at(Index station) const {
+    return (amplitudes_.row(station) * cosines_).transpose().array();
+  }
+  /// dp2/dx that drives the step to a station. Taken downstream: with the derivatives upstream of
+  /// the velocities it makes the second difference of an elliptic equation.
+  Array1 push(Index station) const {
+    const Index i = std::min(station, x_.size() - 2);
+    return (at(i + 1) - at(i)) / (x_(i + 1) - x_(i));
+  }
+
+  /// Corrects p2 towards the pressure gradient across that the momentum wants.
+  /// @param wanted  (n, n_s) dp2/dz at the nodes, Pa/m.
+  /// @return greatest change, Pa.
+  double correct(const Matrix& wanted) {
+    const Matrix wanted_sines = wanted * to_sines_.transpose();
+    double greatest = 0.0;
+    for (Index j = 0; j < waves_.size(); ++j) {
+      const double k = waves_(j);
+      // c d'' - k^2 d = -k (present - wanted), present = -k amplitude.
+      const Array1 source = k * (-k * amplitudes_.col(j) - wanted_sines.col(j)).array();
+      Array1 change = solve(kSlowLayers, k * k, source, true);
+      for (int pass = 0; pass < 2; ++pass)
+        change = solve(smoothing_ * smoothing_, 1.0, change, false);
+      amplitudes_.col(j) += change.matrix();
+      greatest = std::max(greatest, change.abs().maxCoeff());
+    }
+    return greatest;
+  }
+
+ private:
+  /// d of -spread d'' + hold d = source with d' = 0 at the inlet and d = 0 at the outlet. A first
+  /// station is `free` of the source: no step leads to it.
+  Array1 solve(double spread, double hold, const Array1& source, bool free) const {
+    const Index n = x_.size();
+    Array1 over(n), d(n);  // Thomas' algorithm
+    over(0) = 1.0;
+    d(0) = 0.0;
+    if (!free) {
+      const double ahead = x_(1) - x_(0), high = 2.0 * spread / (ahead * ahead);
+      over(0) = high / (high + hold);
+      d(0) = source(0) / (high + hold);
+    }
+    for (Index i = 1; i < n - 1; ++i) {
+      const double back = x_(i) - x_(i - 1), ahead = x_(i + 1) - x_(i);
+      const double low = spread / (back * back), high = spread / (back * ahead);
+      const double pivot = low + high + hold - low * over(i - 1);
+      over(i) = high / pivot;
+      d(i) = (low * d(i - 1) + source(i)) / pivot;
+    }
+    d(n - 1) = 0.0;
+    for (Index i = n - 1; i-- > 0;) d(i) += over(i) * d(i + 1);
+    return d;
+  }
+
+  double smoothing_;
+  Array1 x_, waves_;
+  Matrix cosines_, to_sines_, amplitudes_;
+};
+
+/// dp2/dz at the nodes that the momentum across wants at a station.
+Array1 wanted_gradient(const SectionState& state, const SectionState& before, double step,
+                       const EvenBasis& across, double half_width, const Fluid& fluid) {
+  const auto carried = [&](const SectionState& at) {
+    return Array1(at.turning * at.gap * at.mean_square);
+  };
+  const Array1 square = state.turning * carried(state);
+  const Array1 along = (carried(state) - carried(before)) / step;
+  const Array1 aside = (across.even_slope * square.matrix()).array() / half_width;
+  Array1 gradient = -fluid.density.si() / state.gap * (along + aside) -
+                    fluid.viscosity.si() * state.turning * state.shear / state.gap;
+  gradient(gradient.size() - 1) = 0.0;
+  return gradient;
+}
+
+void check(const Array1& x, const Array1& zeta, FlowRate flow_rate) {
+  if (x.size() < 3 || zeta.size() != x.size() || !zeta.isFinite().all()) {
+    throw InputError(kWhere, fmt::format("{} deflections at {} stations", zeta.size(), x.size()),
+                     "Give one finite deflection a station, at three stations or more");
+  }
+  if (!(flow_rate.si() > 0.0) || !std::isfinite(flow_rate.si())) {
+    throw InputError(kWhere, fmt::format("the flow rate is {:g} mL/min", flow_rate.in(mL_per_min)),
+                     "Give a positive flow rate: the march follows the flow");
+  }
+}
+
+}  // namespace
+
+void SectionMarchOptions::validate() const {
+  const auto check_count = [](const char* name, int value, int least, int most) {
+    if (value >= least && value <= most) return;
+    throw InputError(kWhere, fmt::format("{} is {}", name, value),
+                     fmt::format("Give {} to {}", least, most));
+  };
+  check_count("nodes_across", nodes_across, 4, 40);
+  check_count("degree_up", degree_up, 4, 40);
+  check_count("modes", modes, 0, nodes_across / 2);
+  check_count("sweeps", sweeps, 0, 100);
+}
+
+SectionMarch march_section(const Channel& channel, const WallShape& shape, const Fluid& fluid,
+                           FlowRate flow_rate, const Array1& x, const Array1& zeta,
+                           const SectionMarchOptions& options) {
+  options.validate();
+  channel.validate(kWhere);
+  fluid.validate(kWhere);
+  check(x, zeta, flow_rate);
+  SectionStepper stepper(channel, fluid, flow_rate.si(), options.nodes_across, options.degree_up);
+  const double half_width = 0.5 * channel.width.si(), height = channel.height.si();
+  const MarchGrid grid = march_grid(
+      x, options.inlet,
+      flow_rate.si() / channel.width.si() * (height + zeta(0)) / fluid.kinematic_viscosity().si());
+  const Array1 deflections = on_grid(grid, zeta);
+  const Array1& s = stepper.across();
+  const Array1 form = s.unaryExpr([&](double at) { return shape.value(at); });
+  const Index n = grid.x.size();
+  for (Index i = 0; i < n; ++i) {
+    const double least = (height + deflections(i) * form).minCoeff();
+    if (least > 0.0) continue;
+    throw InputError(
+        kWhere, fmt::format("the gap is {:.4g} um at x = {:.6g} mm", least * 1e6, grid.x(i) * 1e3),
+        "The gap must be positive; check the sign of zeta and the channel height");
+  }
+
+  const Index stations = x.size();
+  const Array1 zero = Array1::Zero(stations);
+  SectionMarch march{zero, zero, zero, zero, zero, zero, Flags1::Zero(stations), {}, 0.0};
+  LateralPressure lateral(stepper.across_basis(), half_width, options.modes, grid.x,
+                          kSmoothing * height);
+  const int sweeps = options.modes > 0 ? options.sweeps : 0;
+  bool answered = true;
+  for (int sweep = 0; sweep <= sweeps && answered; ++sweep) {
+    const bool last = sweep == sweeps;
+    Matrix wanted = Matrix::Zero(n, s.size());
+    const auto keep = [&](Index station, Index i) {
+      const Array1 p2 = lateral.at(i);
+      const Array1 strips = stepper.across_basis().weights * (height + deflections(i) * form);
+      march.roof_pressure(station) = stepper.pressure();
+      march.pressure(station) = stepper.pressure() + (strips * p2).sum() / strips.sum();
+      march.crest_pressure(station) = stepper.pressure() + p2(0);
+      march.momentum_factor(station) = stepper.momentum_factor();
+      march.floor_shear(station) = stepper.floor_shear();
+      march.roof_shear(station) = stepper.roof_shear();
+      if (!stepper.separated()) return;
+      march.flags(station) |= MarchFlag::separated;
+      if (!march.first_separated) march.first_separated = station;
+    };
+    stepper.start(options.inlet, height + deflections(0) * form);
+    if (last) keep(0, 0);
+    Index station = 1;
+    SectionState before = stepper.state();
+    for (Index i = 1; i < n && answered; ++i) {
+      const double step = grid.x(i) - grid.x(i - 1);
+      answered = stepper.step(step, height + deflections(i) * form, lateral.push(i), last ? 1 : 0);
+      if (!answered) break;
+      if (last) {
+        if (grid.stations[static_cast<std::size_t>(station)] == i) keep(station++, i);
+        continue;
+      }
+      SectionState state = stepper.state();
+      wanted.row(i) =
+          wanted_gradient(state, before, step, stepper.across_basis(), half_width, fluid)
+              .transpose()
+              .matrix();
+      before = std::move(state);
+    }
+    if (!last && answered) march.last_change = lateral.correct(wanted);
+  }
+  flag_downstream(march.flags);
+  if (!answered) {
+    for (FlagBits& bits : march.flags) bits |= MarchFlag::no_answer;
+    march.pressure.setConstant(std::numeric_limits<double>::quiet_NaN());
+    march.roof_pressure = march.crest_pressure = march.pressure;
+    return march;
+  }
+  const double outlet = march.pressure(stations - 1);
+  march.pressure -= outlet;
+  march.roof_pressure -= outlet;
+  march.crest_pressure -= outlet;
+  return march;
+}
+
+}  // namespace manoscope::flow
