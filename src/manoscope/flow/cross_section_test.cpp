@@ -194,10 +194,9 @@ TEST(CrossSection, WallShearsBalanceThePressureGradient) {
 }
 
 TEST(CrossSection, OfAHalfCircleIsTheSeriesOfTheSector) {
-  // Sector of angle 2 phi = pi, radius 1 (F. M. White, Viscous Fluid Flow, 1991, table 3-3):
-  //   Q eta/G = 1/4 [(tan 2 phi - 2 phi)/4 ... - (32 phi^4/pi^5)... sum 1/(n^2 (n+2)^2 (n-2)^2)],
-  // here derived anew: u = sum over odd n of c_n (r^n - r^2) sin(n theta) with
-  // c_n = 4/(pi n (4 - n^2)), integrated over the half disc.
+  // Half disc of radius 1: u = sum over odd n of c_n (r^n - r^2) sin(n theta), c_n = 4/(pi n (4 -
+  // n^2)), which is the sector of F. M. White, Viscous Fluid Flow (1991), ch. 3, at its angle pi,
+  // integrated over the half disc.
   double truth = 0.0;
   for (int n = 2001; n >= 1; n -= 2) {
     const double c = 4.0 / (kPi * n * (n * n - 4.0));

@@ -192,8 +192,6 @@ TEST(PlaneMarch, IsNavierStokesInABulgedGap) {
     EXPECT_LT(mean, reach.mean) << reach.file;
     EXPECT_LT(roof, reach.roof) << reach.file;
     EXPECT_LT(floor, reach.floor) << reach.file;
-    std::printf("%s: mean %.4f roof %.4f (boundary layer alone %.4f) floor %.4f %%\n", reach.file,
-                mean, roof, plain, floor);
   }
 }
 
@@ -210,14 +208,15 @@ TEST(PlaneMarch, DevelopsFromAUniformInletAsNavierStokes) {
     const PlaneMarch march = march_plane(x, Array1::Constant(n, kHeight), Array1::Ones(n),
                                          flow_per_width(rate), kWater, options);
     const auto rows = read_table(path);
-    for (const auto& row : rows)
-      if (row[0] > 0)
-        std::printf("%g %g: %.4f %%\n", rate, row[0] * 1e3,
-                    100 * (at(x, march.pressure, row[0]) - row[5]) / rows[1][5]);
-    const double mean_speed = flow_per_width(rate) / kHeight;
-    std::printf("K %g\n", (march.pressure(0) -
-                           12e-3 * flow_per_width(rate) / std::pow(kHeight, 3) * kLength) /
-                              (0.5 * 998 * mean_speed * mean_speed));
+    // The reference's flow leaves a lead-in without friction, where it senses what comes: 0.12 % at
+    // 0.78 mm and 70 mL/min, less downstream. At 5 mL/min it is developed there, to round-off.
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const double error = (at(x, march.pressure, rows[i][0]) - rows[i][5]) / rows[1][5];
+      EXPECT_LT(std::abs(error), rate == 5.0 ? 1e-5 : 1.3e-3) << rows[i][0];
+      if (rows[i][0] > 3e-3) {
+        EXPECT_LT(std::abs(error), 3e-4) << rows[i][0];
+      }
+    }
   }
 }
 

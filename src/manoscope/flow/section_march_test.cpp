@@ -168,9 +168,6 @@ TEST(SectionMarch, IsNavierStokesInABulgedChannel) {
     EXPECT_LT(plain, reach.mean_without) << reach.file;
     EXPECT_GT(plain, 3.0 * mean) << reach.file;
     EXPECT_NEAR(drop(ours) / drop(truth), 1.0, 2e-3) << reach.file;
-    std::printf("%s mean %.4f middle %.4f crest %.4f without %.4f drop %+.4f %% at inlet %.4f\n",
-                reach.file, mean, middle, crest, plain, 100 * (drop(ours) / drop(truth) - 1.0),
-                100 * (march.pressure(0) / rows[0][5] - 1));
   }
 }
 
@@ -200,7 +197,9 @@ TEST(SectionMarch, DevelopsFromAUniformInlet) {
   const double r =
       duct_resistance(1.0 * mPa_s, kChannel.width, kChannel.height, DuctFormula::series);
   const double K = (march.pressure(0) - r * Q * 2.0 * kLength) / (0.5 * 998.0 * Q * Q / (A * A));
-  std::printf("K %g\n", K);
+  // The incremental drop K of a duct of 0.103: 0.81 by the cubic through Shah's table (1978), which
+  // is good to its 2.4 %.
+  EXPECT_NEAR(K, 0.805, 0.03);
   EXPECT_NEAR(march.momentum_factor(n - 1), 1.2375, 2e-3);
 }
 
