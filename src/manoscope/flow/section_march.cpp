@@ -56,6 +56,8 @@ class LateralPressure {
     return (at(i + 1) - at(i)) / (x_(i + 1) - x_(i));
   }
 
+  void scale(double ratio) { amplitudes_ *= ratio; }
+
   /// Corrects p2 towards the pressure gradient across that the momentum wants.
   /// @param wanted  (n, n_s) dp2/dz at the nodes, Pa/m.
   /// @return greatest change, Pa.
@@ -131,6 +133,107 @@ void check(const Array1& x, const Array1& zeta, FlowRate flow_rate) {
   }
 }
 
+/// Sweeps along one channel, with the lateral pressure that they build up.
+class Sweeper {
+ public:
+  Sweeper(const Channel& channel, const WallShape& shape, const Fluid& fluid, FlowRate flow_rate,
+          const Array1& x, const Array1& zeta, const SectionMarchOptions& options)
+      : channel_(channel),
+        fluid_(fluid),
+        inlet_(options.inlet),
+        stepper_(channel, fluid, flow_rate.si(), options.nodes_across, options.degree_up),
+        grid_(march_grid(x, options.inlet,
+                         flow_rate.si() / channel.width.si() * (channel.height.si() + zeta(0)) /
+                             fluid.kinematic_viscosity().si())),
+        gaps_(grid_.x.size(), stepper_.across().size()),
+        lateral_(stepper_.across_basis(), 0.5 * channel.width.si(), options.modes, grid_.x,
+                 kSmoothing * channel.height.si()) {
+    const Array1 deflections = on_grid(grid_, zeta);
+    const Array1 form = stepper_.across().unaryExpr([&](double at) { return shape.value(at); });
+    for (Index i = 0; i < gaps_.rows(); ++i) {
+      gaps_.row(i) = (channel.height.si() + deflections(i) * form).transpose();
+      const double least = gaps_.row(i).minCoeff();
+      if (least > 0.0) continue;
+      throw InputError(
+          kWhere,
+          fmt::format("the gap is {:.4g} um at x = {:.6g} mm", least * 1e6, grid_.x(i) * 1e3),
+          "The gap must be positive; check the sign of zeta and the channel height");
+    }
+  }
+
+  /// One sweep with a part of the fluid's density, and the correction of the lateral pressure.
+  /// @return false if the march broke down or met backflow.
+  bool correct(double inertia) {
+    Fluid fluid = fluid_;
+    fluid.density = inertia * fluid_.density;
+    Matrix wanted = Matrix::Zero(gaps_.rows(), gaps_.cols());
+    SectionState before;
+    bool attached = true;
+    const bool answered = sweep(inertia, 0, [&](Index i) {
+      SectionState state = stepper_.state();
+      attached = attached && !stepper_.separated();
+      if (i > 0) {
+        wanted.row(i) = wanted_gradient(state, before, grid_.x(i) - grid_.x(i - 1),
+                                        stepper_.across_basis(), 0.5 * channel_.width.si(), fluid)
+                            .transpose()
+                            .matrix();
+      }
+      before = std::move(state);
+    });
+    if (answered) last_change_ = lateral_.correct(wanted);
+    return answered && attached;
+  }
+
+  /// The lateral pressure of another density, as inertia has it.
+  void scale(double ratio) { lateral_.scale(ratio); }
+
+  /// The last sweep, kept. @return false if it broke down.
+  bool finish(SectionMarch& march) {
+    march.last_change = last_change_;
+    Index station = 0;
+    return sweep(1.0, 1, [&](Index i) {
+      if (grid_.stations[static_cast<std::size_t>(station)] != i) return;
+      const Array1 p2 = lateral_.at(i);
+      const Array1 strips = stepper_.across_basis().weights * gaps_.row(i).transpose();
+      march.roof_pressure(station) = stepper_.pressure();
+      march.pressure(station) = stepper_.pressure() + (strips * p2).sum() / strips.sum();
+      march.crest_pressure(station) = stepper_.pressure() + p2(0);
+      march.momentum_factor(station) = stepper_.momentum_factor();
+      march.floor_shear(station) = stepper_.floor_shear();
+      march.roof_shear(station) = stepper_.roof_shear();
+      if (stepper_.separated()) {
+        march.flags(station) |= MarchFlag::separated;
+        if (!march.first_separated) march.first_separated = station;
+      }
+      ++station;
+    });
+  }
+
+ private:
+  template <class Visit>
+  bool sweep(double inertia, int repeats, Visit&& visit) {
+    stepper_.start(inlet_, gaps_.row(0).transpose(), inertia);
+    visit(Index{0});
+    for (Index i = 1; i < grid_.x.size(); ++i) {
+      if (!stepper_.step(grid_.x(i) - grid_.x(i - 1), gaps_.row(i).transpose(), lateral_.push(i),
+                         repeats)) {
+        return false;
+      }
+      visit(i);
+    }
+    return true;
+  }
+
+  Channel channel_;
+  Fluid fluid_;
+  InletProfile inlet_;
+  SectionStepper stepper_;
+  MarchGrid grid_;
+  Array2 gaps_;  ///< (n, n_s) m
+  LateralPressure lateral_;
+  double last_change_ = 0.0;
+};
+
 }  // namespace
 
 void SectionMarchOptions::validate() const {
@@ -152,67 +255,26 @@ SectionMarch march_section(const Channel& channel, const WallShape& shape, const
   channel.validate(kWhere);
   fluid.validate(kWhere);
   check(x, zeta, flow_rate);
-  SectionStepper stepper(channel, fluid, flow_rate.si(), options.nodes_across, options.degree_up);
-  const double half_width = 0.5 * channel.width.si(), height = channel.height.si();
-  const MarchGrid grid = march_grid(
-      x, options.inlet,
-      flow_rate.si() / channel.width.si() * (height + zeta(0)) / fluid.kinematic_viscosity().si());
-  const Array1 deflections = on_grid(grid, zeta);
-  const Array1& s = stepper.across();
-  const Array1 form = s.unaryExpr([&](double at) { return shape.value(at); });
-  const Index n = grid.x.size();
-  for (Index i = 0; i < n; ++i) {
-    const double least = (height + deflections(i) * form).minCoeff();
-    if (least > 0.0) continue;
-    throw InputError(
-        kWhere, fmt::format("the gap is {:.4g} um at x = {:.6g} mm", least * 1e6, grid.x(i) * 1e3),
-        "The gap must be positive; check the sign of zeta and the channel height");
+  const auto make = [&] { return Sweeper(channel, shape, fluid, flow_rate, x, zeta, options); };
+  Sweeper sweeper = make();
+  const int sweeps = options.modes > 0 ? options.sweeps : 0;
+  bool attached = true;
+  for (int sweep = 0; sweep < sweeps && attached; ++sweep) attached = sweeper.correct(1.0);
+  if (!attached) {
+    // Without the lateral pressure the flow may separate where with it, it does not: it is built up
+    // while the inertia grows.
+    sweeper = make();
+    constexpr int kSteps = 8;
+    for (int step = 1; step <= kSteps; ++step) {
+      sweeper.correct(double(step) / kSteps);
+      if (step < kSteps) sweeper.scale((step + 1.0) / step);
+    }
+    for (int sweep = 0; sweep < sweeps; ++sweep) sweeper.correct(1.0);
   }
-
   const Index stations = x.size();
   const Array1 zero = Array1::Zero(stations);
   SectionMarch march{zero, zero, zero, zero, zero, zero, Flags1::Zero(stations), {}, 0.0};
-  LateralPressure lateral(stepper.across_basis(), half_width, options.modes, grid.x,
-                          kSmoothing * height);
-  const int sweeps = options.modes > 0 ? options.sweeps : 0;
-  bool answered = true;
-  for (int sweep = 0; sweep <= sweeps && answered; ++sweep) {
-    const bool last = sweep == sweeps;
-    Matrix wanted = Matrix::Zero(n, s.size());
-    const auto keep = [&](Index station, Index i) {
-      const Array1 p2 = lateral.at(i);
-      const Array1 strips = stepper.across_basis().weights * (height + deflections(i) * form);
-      march.roof_pressure(station) = stepper.pressure();
-      march.pressure(station) = stepper.pressure() + (strips * p2).sum() / strips.sum();
-      march.crest_pressure(station) = stepper.pressure() + p2(0);
-      march.momentum_factor(station) = stepper.momentum_factor();
-      march.floor_shear(station) = stepper.floor_shear();
-      march.roof_shear(station) = stepper.roof_shear();
-      if (!stepper.separated()) return;
-      march.flags(station) |= MarchFlag::separated;
-      if (!march.first_separated) march.first_separated = station;
-    };
-    stepper.start(options.inlet, height + deflections(0) * form);
-    if (last) keep(0, 0);
-    Index station = 1;
-    SectionState before = stepper.state();
-    for (Index i = 1; i < n && answered; ++i) {
-      const double step = grid.x(i) - grid.x(i - 1);
-      answered = stepper.step(step, height + deflections(i) * form, lateral.push(i), last ? 1 : 0);
-      if (!answered) break;
-      if (last) {
-        if (grid.stations[static_cast<std::size_t>(station)] == i) keep(station++, i);
-        continue;
-      }
-      SectionState state = stepper.state();
-      wanted.row(i) =
-          wanted_gradient(state, before, step, stepper.across_basis(), half_width, fluid)
-              .transpose()
-              .matrix();
-      before = std::move(state);
-    }
-    if (!last && answered) march.last_change = lateral.correct(wanted);
-  }
+  const bool answered = sweeper.finish(march);
   flag_downstream(march.flags);
   if (!answered) {
     for (FlagBits& bits : march.flags) bits |= MarchFlag::no_answer;

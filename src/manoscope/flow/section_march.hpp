@@ -46,7 +46,9 @@ struct SectionMarch {
 ///   p2_z = -rho/h [d/dx (h mean(u w)) + d/dz (h mean(w^2))] - eta [w_y]/h,  w = 0 at x = 0,
 /// as cosines in z. It acts upstream: the march is repeated, and each time p2 is corrected by
 /// (d_zz + c d_xx) dp = d_z (defect), elliptic as inviscid flow has it (c = 1); c = 5 for the slow
-/// layers, which answer more to a pressure. p2 = 0 at the outlet and p2_x = 0 at the inlet.
+/// layers, which answer more to a pressure. p2 = 0 at the outlet and p2_x = 0 at the inlet. Where a
+/// sweep meets backflow, p2 is built up once more while the inertia grows in eight steps; backflow
+/// that is left is cut off and flagged.
 ///
 /// Source: parabolised Navier-Stokes equations with a global pressure iteration, as in Rubin &
 /// Tannehill, Annu. Rev. Fluid Mech. 24 (1992) 117; the closure is our own and held by tests.

@@ -11,6 +11,7 @@ namespace manoscope::flow {
 SectionStepper::SectionStepper(const Channel& channel, const Fluid& fluid, double flow_rate,
                                int nodes_across, int degree_up)
     : half_width_(0.5 * channel.width.si()),
+      full_density_(fluid.density.si()),
       density_(fluid.density.si()),
       viscosity_(fluid.viscosity.si()),
       flow_(flow_rate),
@@ -58,7 +59,9 @@ Matrix SectionStepper::laplacian(const Array1& gap) const {
   return result;
 }
 
-void SectionStepper::start(InletProfile inlet, const Array1& gap) {
+void SectionStepper::start(InletProfile inlet, const Array1& gap, double inertia) {
+  density_ = inertia * full_density_;
+  backflow_ = false;
   const Index ns = n_across_, nt = n_up_;
   if (inlet == InletProfile::developed) {
     const Vector developed = laplacian(gap).partialPivLu().solve(Vector::Constant(ns * nt, -1.0));
@@ -160,6 +163,12 @@ bool SectionStepper::step(double step, const Array1& gap, const Array1& push, in
     if (!(u.cwiseAbs().maxCoeff() < 20.0 * mean)) return false;
     predicted = u;
   }
+  // Backflow is cut off (and told), or it would grow: the march cannot know where it comes from.
+  backflow_ = (u.array() < 0.0).any();
+  if (backflow_) {
+    u = u.cwiseMax(0.0);
+    u *= flow_ / flux(u);
+  }
 
   const Array1 mean_flux = depth_mean(u) * gap.head(ns);
   const Array1 turned =
@@ -210,11 +219,6 @@ double SectionStepper::momentum_factor() const {
   return area * square / (flow_ * flow_);
 }
 
-bool SectionStepper::separated() const {
-  const Index nt = n_up_;
-  const Eigen::RowVectorXd floor = up_.derivative.row(0).segment(1, nt) * u_;
-  const Eigen::RowVectorXd roof = up_.derivative.row(nt + 1).segment(1, nt) * u_;
-  return !((floor.array() > 0.0).all() && (roof.array() < 0.0).all());
-}
+bool SectionStepper::separated() const { return backflow_; }
 
 }  // namespace manoscope::flow

@@ -31,8 +31,10 @@ class SectionStepper {
   const Array1& across() const { return across_.nodes; }  ///< s in [0, 1]
   const EvenBasis& across_basis() const { return across_; }
 
-  /// Starts at a station. @param gap  (n_s) m.
-  void start(InletProfile inlet, const Array1& gap);
+  /// Starts at a station.
+  /// @param gap      (n_s) m.
+  /// @param inertia  part of the fluid's density to march with.
+  void start(InletProfile inlet, const Array1& gap, double inertia);
 
   /// Goes one step on. The convecting velocities are extrapolated, which is of second order.
   /// @param push     (n_s) dp2/dx at the nodes, Pa/m.
@@ -46,7 +48,7 @@ class SectionStepper {
   double floor_shear() const;
   double roof_shear() const;
   double momentum_factor() const;
-  bool separated() const;  ///< flow back along the floor or roof
+  bool separated() const;  ///< flow back somewhere, which was cut off
 
  private:
   /// Laplacian on the inner nodes under a roof.
@@ -57,7 +59,7 @@ class SectionStepper {
                       Matrix& system, Vector& right);
   Array1 depth_mean(const Matrix& u) const;  ///< (n_s - 1)
 
-  double half_width_, density_, viscosity_, flow_;
+  double half_width_, full_density_, density_, viscosity_, flow_;
   EvenBasis across_;
   NodalBasis up_;
   Index n_across_, n_up_;                 ///< inner nodes
@@ -69,6 +71,7 @@ class SectionStepper {
   Array1 turning_;       ///< w/u over half the width, 1/m
   Matrix u_, u_before_;  ///< (n_up, n_across), m/s
   double pressure_ = 0.0, pressure_before_ = 0.0, previous_step_ = 0.0;
+  bool backflow_ = false;
 };
 
 }  // namespace manoscope::flow
