@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 #include "tests/support/reference_table.hpp"
@@ -158,40 +160,88 @@ TEST(PlaneMarch, ConvergesSpectrallyAcrossTheGap) {
   EXPECT_NEAR(march_bulge(501, 70.0).pressure(0) / finest, 1.0, 1e-7);
 }
 
+/// Bounds of the greatest error along the channel, % of the largest pressure: of the mean over the
+/// gap, on the roof and on the floor with the pressure across the stream, and on the roof without.
 struct Reach {
   const char* file;
-  double flow_rate, mean, roof, floor;  ///< bounds, % of the largest pressure
+  double mL_per_minute, mean, roof, floor, roof_without;
 };
 
+/// Greatest errors from 1/40 of the length to as far from the outlet.
+void expect_within(const Reach& reach, const Array1& x, const PlaneMarch& march,
+                   const std::vector<std::array<double, 4>>& rows) {
+  double largest = 0.0, mean = 0.0, roof = 0.0, floor = 0.0, without = 0.0;
+  for (const auto& row : rows) largest = std::max(largest, row[3]);
+  for (const auto& [where, on_floor, on_roof, middle] : rows) {
+    if (where < 0.0249 * kLength || where > 0.976 * kLength) continue;
+    const auto error = [&, place = where](const Array1& p, double truth) {
+      return 100.0 * std::abs(at(x, p, place) - truth) / largest;
+    };
+    mean = std::max(mean, error(march.pressure, middle));
+    roof = std::max(roof, error(march.roof_pressure, on_roof));
+    floor = std::max(floor, error(march.floor_pressure, on_floor));
+    without = std::max(without, error(march.pressure, on_roof));
+  }
+  EXPECT_LT(mean, reach.mean) << reach.file;
+  EXPECT_LT(roof, reach.roof) << reach.file;
+  EXPECT_LT(floor, reach.floor) << reach.file;
+  EXPECT_LT(without, reach.roof_without) << reach.file;
+}
+
 TEST(PlaneMarch, IsNavierStokesInABulgedGap) {
-  // From the first station inside (0.39 mm) to the last but one. B0 forces v = 0 on its inlet,
-  // where the gap opens with a slope of 0.055 already: its flow is not slender there. B1 has a
-  // lead-in. The bounds are what was found, rounded up.
-  for (const Reach& reach : {Reach{"caseB0_Q5.csv", 5.0, 0.015, 0.010, 0.025},
-                             Reach{"caseB1_Q5.csv", 5.0, 0.015, 0.010, 0.02},
-                             Reach{"caseB0_Q70.csv", 70.0, 0.31, 0.35, 0.28},
-                             Reach{"caseB1_Q70.csv", 70.0, 0.10, 0.13, 0.10}}) {
+  // B0 forces v = 0 on its inlet, where the gap opens with a slope of 0.055 already: its flow is
+  // not slender there. B1 has a lead-in. The bounds are what was found, rounded up; the targets
+  // were 0.05 and 0.4.
+  for (const Reach& reach : {Reach{"caseB0_Q5.csv", 5.0, 0.015, 0.010, 0.025, 0.015},
+                             Reach{"caseB1_Q5.csv", 5.0, 0.015, 0.010, 0.020, 0.015},
+                             Reach{"caseB0_Q70.csv", 70.0, 0.31, 0.35, 0.28, 0.12},
+                             Reach{"caseB1_Q70.csv", 70.0, 0.10, 0.13, 0.10, 0.13}}) {
     const auto path = shared_file(std::string("data/flow/") + reach.file);
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference flow " << path;
-    const auto rows = read_table(path);
+    std::vector<std::array<double, 4>> rows;
+    for (const auto& row : read_table(path)) rows.push_back({row[0], row[3], row[2], row[5]});
     const Index n = 1001;
-    const Array1 x = Array1::LinSpaced(n, 0.0, kLength);
-    const PlaneMarch march = march_bulge(n, reach.flow_rate);
-    double largest = 0.0, mean = 0.0, roof = 0.0, floor = 0.0, plain = 0.0;
-    for (const auto& row : rows) largest = std::max(largest, row[5]);
-    for (std::size_t i = 1; i + 1 < rows.size(); ++i) {
-      const auto& row = rows[i];
-      const auto error = [&](const Array1& p, double truth) {
-        return 100.0 * std::abs(at(x, p, row[0]) - truth) / largest;
-      };
-      mean = std::max(mean, error(march.pressure, row[5]));
-      roof = std::max(roof, error(march.roof_pressure, row[2]));
-      plain = std::max(plain, error(march.pressure, row[2]));
-      floor = std::max(floor, error(march.floor_pressure, row[3]));
-    }
-    EXPECT_LT(mean, reach.mean) << reach.file;
-    EXPECT_LT(roof, reach.roof) << reach.file;
-    EXPECT_LT(floor, reach.floor) << reach.file;
+    expect_within(reach, Array1::LinSpaced(n, 0.0, kLength), march_bulge(n, reach.mL_per_minute),
+                  rows);
+  }
+}
+
+std::vector<std::array<double, 4>> own_reference(const std::string& name) {
+  const auto path = std::filesystem::path(test_paths::source) / "tests/reference" / name;
+  std::vector<std::array<double, 4>> rows;
+  for (const auto& row : read_table(path)) rows.push_back({row[0], row[1], row[2], row[3]});
+  return rows;
+}
+
+TEST(PlaneMarch, IsNavierStokesBetweenTheFlowRatesOfTheReference) {
+  // Found values rounded up; the target at 20 mL/min was 0.1.
+  for (const Reach& reach :
+       {Reach{"plane_bulge_Q20.csv", 20.0, 0.070, 0.050, 0.090, 0.035},
+        Reach{"plane_bulge_Q20_lead_in.csv", 20.0, 0.030, 0.025, 0.040, 0.040}}) {
+    const auto rows = own_reference(reach.file);
+    ASSERT_GT(rows.size(), 30u);
+    const Index n = 1001;
+    expect_within(reach, Array1::LinSpaced(n, 0.0, kLength), march_bulge(n, reach.mL_per_minute),
+                  rows);
+  }
+}
+
+TEST(PlaneMarch, IsWorstWhereTheInletForbidsTheFlowThatTheRoofAsksFor) {
+  // A roof that leaves the rim with a slope of 0.14: 1.4 % in the mean with v = 0 forced there, 0.4
+  // % behind a straight lead-in. So what is off at a steep inlet is the inlet, not the march. The
+  // pressure across the stream (1 %) is overestimated next to the kink.
+  const Index n = 1001;
+  const Array1 x = Array1::LinSpaced(n, 0.0, kLength);
+  const double end = 0.6e-3;
+  const Array1 gap = 244e-6 + 86e-6 * (1.0 - 0.75 * x / kLength) * (1.0 - (-x / end).exp()) *
+                                  (1.0 - (-(kLength - x) / end).exp());
+  const PlaneMarch march = march_plane(x, gap, Array1::Ones(n), flow_per_width(50.0), kWater);
+  EXPECT_FALSE(march.first_separated.has_value());
+  for (const Reach& reach : {Reach{"plane_steep_Q50.csv", 50.0, 1.5, 2.4, 1.3, 1.4},
+                             Reach{"plane_steep_Q50_lead_in.csv", 50.0, 0.40, 1.0, 0.40, 0.30}}) {
+    const auto rows = own_reference(reach.file);
+    ASSERT_GT(rows.size(), 30u);
+    expect_within(reach, x, march, rows);
   }
 }
 
