@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the reference flows plane_*.csv of this folder (needs numpy and scipy; about 15 s).
+"""Makes the reference flows plane_*.csv of this folder (needs numpy and scipy; about 20 s).
 
 Steady 2-D Navier-Stokes flow between a flat floor and a roof y = h(x), by Galerkin's method with
 Q3 velocities and Q2 pressures on a mesh mapped from a rectangle, Newton's iteration and a sparse
@@ -141,10 +141,17 @@ def ends(size):
     return lambda x: (1 - np.exp(-x / size)) * (1 - np.exp(-(LENGTH - x) / size))
 
 
+def clamped_ends(size):
+    rise = lambda x: 1 - np.exp(-x / size) * (1 + x / size)
+    return lambda x: rise(x) * rise(LENGTH - x)
+
+
 def main(folder):
     bulge = lambda x: 33e-6 * (1 - 0.6 * x / LENGTH) * ends(0.6e-3)(x)
     steep = lambda x: 86e-6 * (1 - 0.75 * x / LENGTH) * ends(0.6e-3)(x)
-    for name, height, deflection, rate in (("bulge", 175e-6, bulge, 20), ("steep", 244e-6, steep, 50)):
+    clamped = lambda x: 86e-6 * (1 - 0.75 * x / LENGTH) * clamped_ends(0.4e-3)(x)
+    cases = (("bulge", 175e-6, bulge, 20), ("steep", 244e-6, steep, 50), ("clamped", 244e-6, clamped, 50))
+    for name, height, deflection, rate in cases:
         for lead_in in (0, 10):
             table = flow(height, deflection, rate, lead_in)
             path = Path(folder) / f"plane_{name}_Q{rate}{'_lead_in' if lead_in else ''}.csv"

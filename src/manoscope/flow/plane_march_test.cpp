@@ -245,6 +245,24 @@ TEST(PlaneMarch, IsWorstWhereTheInletForbidsTheFlowThatTheRoofAsksFor) {
   }
 }
 
+TEST(PlaneMarch, IsNavierStokesUnderAClampedWallOfTheSizesOfS4) {
+  // The same sizes, but the roof leaves the rim without a slope.
+  const Index n = 1001;
+  const Array1 x = Array1::LinSpaced(n, 0.0, kLength);
+  const auto rise = [](const Array1& s) {
+    return Array1(1.0 - (-s / 0.4e-3).exp() * (1.0 + s / 0.4e-3));
+  };
+  const Array1 gap = 244e-6 + 86e-6 * (1.0 - 0.75 * x / kLength) * rise(x) * rise(kLength - x);
+  const PlaneMarch march = march_plane(x, gap, Array1::Ones(n), flow_per_width(50.0), kWater);
+  for (const Reach& reach :
+       {Reach{"plane_clamped_Q50.csv", 50.0, 0.26, 0.57, 0.23, 0.49},
+        Reach{"plane_clamped_Q50_lead_in.csv", 50.0, 0.13, 0.45, 0.28, 0.39}}) {
+    const auto rows = own_reference(reach.file);
+    ASSERT_GT(rows.size(), 30u);
+    expect_within(reach, x, march, rows);
+  }
+}
+
 TEST(PlaneMarch, DevelopsFromAUniformInletAsNavierStokes) {
   for (const double rate : {5.0, 70.0}) {
     const auto path = shared_file(rate == 5.0 ? "data/flow/caseA3_sliplead_Q5.csv"
