@@ -145,11 +145,18 @@ CrossSection SectionFamily::at(Length mean_deflection) const {
 }
 
 SectionsAlong sections_along(const SectionFamily& family, const Array1& x, const Array1& zeta) {
+  std::vector<CrossSection> sections;
+  sections.reserve(static_cast<std::size_t>(zeta.size()));
+  for (const double deflection : zeta) sections.push_back(family.at(Length::from_si(deflection)));
+  return sections_along(x, sections);
+}
+
+SectionsAlong sections_along(const Array1& x, const std::vector<CrossSection>& sections) {
   const Index n = x.size();
-  if (n < 2 || zeta.size() != n) {
+  if (n < 2 || static_cast<Index>(sections.size()) != n) {
     throw InputError("sections along the channel",
-                     fmt::format("{} deflections at {} stations", zeta.size(), n),
-                     "Give one deflection a station, at two stations or more");
+                     fmt::format("{} sections at {} stations", sections.size(), n),
+                     "Give one a station, at two stations or more");
   }
   SectionsAlong along{x,         Array1(n), Array1(n), Array1(n), Array1(n),
                       Array1(n), Array1(n), Array1(n), Array1(n)};
@@ -160,7 +167,7 @@ SectionsAlong sections_along(const SectionFamily& family, const Array1& x, const
                                    i, x(i) * 1e3),
                        "Sort the stations along the flow and drop duplicates");
     }
-    const CrossSection section = family.at(Length::from_si(zeta(i)));
+    const CrossSection& section = sections[static_cast<std::size_t>(i)];
     along.area(i) = section.area;
     along.mean_gap(i) = section.mean_gap;
     along.conductance(i) = section.conductance;

@@ -89,4 +89,8 @@ struct SectionsAlong {
 /// @throws InputError if the sizes differ, x does not ascend or a deflection is out of the range.
 SectionsAlong sections_along(const SectionFamily& family, const Array1& x, const Array1& zeta);
 
+/// Sections solved one by one, for a roof that changes its shape along the channel.
+/// @param sections  one a station.
+SectionsAlong sections_along(const Array1& x, const std::vector<CrossSection>& sections);
+
 }  // namespace manoscope::flow

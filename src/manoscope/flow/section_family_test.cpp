@@ -55,6 +55,16 @@ TEST(SectionFamily, SolvesAFewSectionsForThousandsOfStations) {
   EXPECT_EQ(along.conductance(100), family.at(Length::from_si(zeta(100))).conductance);
 }
 
+TEST(SectionsAlong, AreThoseOfTheSectionsGiven) {
+  const Array1 x = Array1::LinSpaced(2, 0.0, 1e-3);
+  const CrossSection flat = solve_cross_section(flat_roof(1.7 * mm, 175.0 * um));
+  const CrossSection high = solve_cross_section(flat_roof(1.7 * mm, 200.0 * um));
+  const SectionsAlong along = sections_along(x, {flat, high});
+  EXPECT_EQ(along.conductance(0), flat.conductance);
+  EXPECT_EQ(along.momentum_factor(1), high.momentum_factor);
+  EXPECT_THROW(sections_along(x, {flat}), InputError);
+}
+
 TEST(SectionFamily, RefusesWhatItDoesNotCover) {
   const SectionFamily family(kChannel, WallShape::parabola(), Length{}, 10.0 * um);
   EXPECT_THROW(family.at(11.0 * um), InputError);

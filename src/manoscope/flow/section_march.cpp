@@ -122,10 +122,20 @@ Array1 wanted_gradient(const SectionState& state, const SectionState& before, do
   return gradient;
 }
 
-void check(const Array1& x, const Array1& zeta, FlowRate flow_rate) {
-  if (x.size() < 3 || zeta.size() != x.size() || !zeta.isFinite().all()) {
-    throw InputError(kWhere, fmt::format("{} deflections at {} stations", zeta.size(), x.size()),
-                     "Give one finite deflection a station, at three stations or more");
+void check(const Array1& x, const Array2& gaps, Index nodes, FlowRate flow_rate) {
+  if (x.size() < 3 || gaps.rows() != x.size() || gaps.cols() != nodes) {
+    throw InputError(kWhere,
+                     fmt::format("gaps at {} stations and {} places across, for {} stations and {} "
+                                 "nodes",
+                                 gaps.rows(), gaps.cols(), x.size(), nodes),
+                     "Give one gap a node at every station, at three stations or more");
+  }
+  for (Index i = 0; i < x.size(); ++i) {
+    const double least = gaps.row(i).minCoeff();
+    if (least > 0.0 && gaps.row(i).isFinite().all()) continue;
+    throw InputError(
+        kWhere, fmt::format("the gap is {:.4g} um at x = {:.6g} mm", least * 1e6, x(i) * 1e3),
+        "The gap must be positive and finite; check the sign of zeta and the channel height");
   }
   if (!(flow_rate.si() > 0.0) || !std::isfinite(flow_rate.si())) {
     throw InputError(kWhere, fmt::format("the flow rate is {:g} mL/min", flow_rate.in(mL_per_min)),
@@ -136,29 +146,19 @@ void check(const Array1& x, const Array1& zeta, FlowRate flow_rate) {
 /// Sweeps along one channel, with the lateral pressure that they build up.
 class Sweeper {
  public:
-  Sweeper(const Channel& channel, const WallShape& shape, const Fluid& fluid, FlowRate flow_rate,
-          const Array1& x, const Array1& zeta, const SectionMarchOptions& options)
+  Sweeper(const Channel& channel, const Fluid& fluid, FlowRate flow_rate, const Array1& x,
+          const Array2& gaps, const SectionMarchOptions& options)
       : channel_(channel),
         fluid_(fluid),
         inlet_(options.inlet),
         stepper_(channel, fluid, flow_rate.si(), options.nodes_across, options.degree_up),
-        grid_(march_grid(x, options.inlet,
-                         flow_rate.si() / channel.width.si() * (channel.height.si() + zeta(0)) /
-                             fluid.kinematic_viscosity().si())),
-        gaps_(grid_.x.size(), stepper_.across().size()),
+        grid_(march_grid(
+            x, options.inlet,
+            flow_rate.si() / channel.width.si() * gaps(0, 0) / fluid.kinematic_viscosity().si())),
+        gaps_(grid_.x.size(), gaps.cols()),
         lateral_(stepper_.across_basis(), 0.5 * channel.width.si(), options.modes, grid_.x,
                  kSmoothing * channel.height.si()) {
-    const Array1 deflections = on_grid(grid_, zeta);
-    const Array1 form = stepper_.across().unaryExpr([&](double at) { return shape.value(at); });
-    for (Index i = 0; i < gaps_.rows(); ++i) {
-      gaps_.row(i) = (channel.height.si() + deflections(i) * form).transpose();
-      const double least = gaps_.row(i).minCoeff();
-      if (least > 0.0) continue;
-      throw InputError(
-          kWhere,
-          fmt::format("the gap is {:.4g} um at x = {:.6g} mm", least * 1e6, grid_.x(i) * 1e3),
-          "The gap must be positive; check the sign of zeta and the channel height");
-    }
+    for (Index s = 0; s < gaps.cols(); ++s) gaps_.col(s) = on_grid(grid_, gaps.col(s));
   }
 
   /// One sweep with a part of the fluid's density, and the correction of the lateral pressure.
@@ -248,14 +248,32 @@ void SectionMarchOptions::validate() const {
   check_count("sweeps", sweeps, 0, 100);
 }
 
+Array1 section_march_nodes(const SectionMarchOptions& options) {
+  options.validate();
+  return even_chebyshev_basis(options.nodes_across).nodes;
+}
+
 SectionMarch march_section(const Channel& channel, const WallShape& shape, const Fluid& fluid,
                            FlowRate flow_rate, const Array1& x, const Array1& zeta,
+                           const SectionMarchOptions& options) {
+  if (zeta.size() != x.size()) {
+    throw InputError(kWhere, fmt::format("{} deflections at {} stations", zeta.size(), x.size()),
+                     "Give one deflection a station");
+  }
+  const Array1 form =
+      section_march_nodes(options).unaryExpr([&](double s) { return shape.value(s); });
+  const Array2 gaps = channel.height.si() + (zeta.matrix() * form.matrix().transpose()).array();
+  return march_section(channel, fluid, flow_rate, x, gaps, options);
+}
+
+SectionMarch march_section(const Channel& channel, const Fluid& fluid, FlowRate flow_rate,
+                           const Array1& x, const Array2& gaps,
                            const SectionMarchOptions& options) {
   options.validate();
   channel.validate(kWhere);
   fluid.validate(kWhere);
-  check(x, zeta, flow_rate);
-  const auto make = [&] { return Sweeper(channel, shape, fluid, flow_rate, x, zeta, options); };
+  check(x, gaps, options.nodes_across + 1, flow_rate);
+  const auto make = [&] { return Sweeper(channel, fluid, flow_rate, x, gaps, options); };
   Sweeper sweeper = make();
   const int sweeps = options.modes > 0 ? options.sweeps : 0;
   bool attached = true;

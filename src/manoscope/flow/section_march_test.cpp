@@ -125,6 +125,28 @@ TEST(SectionMarch, BearsARoughRoof) {
   EXPECT_NEAR(march.pressure(0) / march_bulge(n, 70.0).pressure(0), 1.0, 1e-3);
 }
 
+TEST(SectionMarch, TakesARoofThatChangesItsShape) {
+  const Index n = 201;
+  const Array1 x = Array1::LinSpaced(n, 0.0, kLength), zeta = bulge(x), s = section_march_nodes();
+  const WallShape start = WallShape::clamped_strip(), end = WallShape::parabola();
+  Array2 gaps(n, s.size());
+  for (Index i = 0; i < n; ++i) {
+    const double part = x(i) / kLength;
+    for (Index j = 0; j < s.size(); ++j) {
+      const double g = (1.0 - part) * start.value(s(j)) + part * end.value(s(j));
+      gaps(i, j) = 175e-6 + zeta(i) * g;
+    }
+  }
+  const FlowRate flow_rate = 20.0 * mL_per_min;
+  const double mixed = march_section(kChannel, kWater, flow_rate, x, gaps).pressure(0);
+  const double first = march_section(kChannel, start, kWater, flow_rate, x, zeta).pressure(0);
+  const double last = march_section(kChannel, end, kWater, flow_rate, x, zeta).pressure(0);
+  EXPECT_LT(first, last);  // the strip bulges more in the middle, where the flow is
+  EXPECT_GT(mixed, first);
+  EXPECT_LT(mixed, last);
+  EXPECT_THROW(march_section(kChannel, kWater, flow_rate, x, gaps.leftCols(4)), InputError);
+}
+
 TEST(SectionMarch, BuildsTheLateralPressureUpWhereTheFirstSweepSeparates) {
   SectionMarchOptions options;
   options.modes = 0;
