@@ -47,7 +47,7 @@ TEST(FlowModels, HaveNamesThatLeadToThem) {
 }
 
 TEST(FlowModels, AgreeOnASlowFlowThroughASlenderChannel) {
-  FlowCase flow = bulged(1001, 0.01);
+  FlowCase flow = bulged(501, 0.01);
   flow.outlet_pressure = 3.0 * Pa;
   const Array1 creeping = pressure_along(FlowModel::creeping, flow).pressure - 3.0;
   for (const FlowModelInfo& info : kFlowModels) {
@@ -81,7 +81,7 @@ TEST(FlowModels, MissNavierStokesByWhatTheirValiditySays) {
         shared_file(rate == 5.0 ? "data/flow/caseD_Q5.csv" : "data/flow/caseD_Q70.csv");
     if (!std::filesystem::exists(path)) GTEST_SKIP() << "no reference flow " << path;
     const auto rows = read_table(path);
-    const FlowCase flow = bulged(1551, rate);
+    const FlowCase flow = bulged(776, rate);
     double largest = 0.0;
     for (const auto& row : rows) largest = std::max(largest, row[5]);
     for (const Miss& miss : misses) {
@@ -132,7 +132,7 @@ TEST(FlowModels, SayThatAMarchGoesWithTheFlow) {
 }
 
 TEST(FlowModels, AUniformInletCostsTheDevelopmentOfTheFlow) {
-  FlowCase flow = bulged(801, 70.0);
+  FlowCase flow = bulged(401, 70.0);
   const double developed = pressure_along(FlowModel::plane_march, flow).pressure(0);
   flow.inlet = InletProfile::uniform;
   const double uniform = pressure_along(FlowModel::plane_march, flow).pressure(0);
