@@ -71,7 +71,7 @@ class Measure(DemoFolder):
             self.assertIn(line, done.stdout)
         self.assertTrue(all(len(line) <= 100 for line in done.stdout.split("Checks")[1].splitlines()))
         told = json.loads(measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
-        self.assertEqual({"left_out", "shapes", "repeats"}, set(told["checks"]))
+        self.assertEqual({"left_out", "shapes", "repeats", "sweeps"}, set(told["checks"]))
         self.assertGreater(told["checks"]["left_out"]["rms_Pa"], 0.0)
         maps = [entry["map"] for entry in told["checks"]["shapes"]]
         self.assertEqual(len(maps), len(set(maps)))
