@@ -31,7 +31,7 @@ def read_tests(paths):
             for test in suite["testsuite"]:
                 if test.get("result") != "COMPLETED":  # skipped
                     continue
-                figures = {}
+                figures = {"sample": test.get("sample", "")}
                 for key, value in test.items():
                     try:
                         figures[key] = float(value)
@@ -96,12 +96,12 @@ def campaign_lines(rows):
 
 def test_lines(tests):
     lines = []
-    ratios = {name.split("/")[-1]: figures["pixel_part_over_limit_inside"]
-              for name, (_, figures) in tests.items() if "pixel_part_over_limit_inside" in figures}
+    ratios = {figures["sample"]: figures["pixel_part_over_limit_inside"]
+              for _, figures in tests.values() if "pixel_part_over_limit_inside" in figures}
     if ratios:
         lines.append(("pixels' part of the variance over the limit of Cramer and Rao, inside, "
                       "highest flow rate", "at most 1.15",
-                      ", ".join(f"S{int(k) + 1} {v:.2f}" for k, v in sorted(ratios.items())),
+                      told(dict(sorted(ratios.items()))),
                       max(ratios.values()) <= 1.15))
     membranes = [figures for _, figures in tests.values() if "rms_hPa" in figures]
     if membranes:

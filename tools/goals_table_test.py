@@ -25,7 +25,7 @@ class GoalsTable(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.write("bench.json", {"reading": {"manoscope": {"cpu_s": 0.011}, "ratio_cpu": 3.0}})
         self.write("tests.json", document({"parameter_digits_from_start_1": "7.5"},
-                                          {"pixel_part_over_limit_inside": "1.1", "name": "Of/0"}))
+                                          {"pixel_part_over_limit_inside": "1.1", "sample": "S1"}))
         self.campaign(row("S1", 1, 1.0, 0.95), row("S1", 2, 1.0, 0.95), row("S1b", 1, 9.0, 0.0, 90.0),
                       *(row("S1", seed, 1.0, 0.96, stretch=stretch)
                         for stretch in ("inlet", "whole", "drop") for seed in (1, 2)))

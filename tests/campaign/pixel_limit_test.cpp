@@ -26,6 +26,7 @@ TEST_P(PixelLimit, IsNearlyReachedByWhatPixelNoiseDoesToTheReading) {
   twin::Scenario scenario = varied_scenario(GetParam(), 0);
   scenario.camera = twin::resized(scenario.camera, "512x96");
   scenario.flow_rates = {scenario.flow_rates.back()};
+  RecordProperty("sample", GetParam());
   const twin::SolvedScenario solved = twin::solve_scenario(scenario);
   const test_support::TemporaryFolder scratch;
   const MeasuredMember member =
@@ -55,7 +56,9 @@ TEST_P(PixelLimit, IsNearlyReachedByWhatPixelNoiseDoesToTheReading) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, PixelLimit, ::testing::Values("S1", "S2", "S3", "S4", "S5"));
+INSTANTIATE_TEST_SUITE_P(Of, PixelLimit, ::testing::Values("S1", "S5"));
+// The others as well in `make goals`.
+INSTANTIATE_TEST_SUITE_P(DISABLED_Of, PixelLimit, ::testing::Values("S2", "S3", "S4"));
 
 }  // namespace
 }  // namespace manoscope::campaign
