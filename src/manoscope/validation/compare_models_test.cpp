@@ -81,7 +81,7 @@ TEST(CompareModels, RaisesFewFalseAlarmsAndCatchesAGapThatIsWrongByThreePerCent)
   EXPECT_LE(alarms, 0.05 * kSeeds);
   EXPECT_GE(caught_high, 0.9 * kSeeds);
   EXPECT_GE(caught_low, 0.9 * kSeeds);
-  EXPECT_LE(along, 0.04 * kSeeds);                       // 1 % +- 0.7 %: four sigma
+  EXPECT_LE(along, 0.04 * kSeeds);                      // 1 % +- 0.7 %: four sigma
   EXPECT_NEAR(std::sqrt(squares / kSeeds), 1.0, 0.15);  // three sigma of 1/sqrt(400)
   std::printf("verdicts: %d false alarms, caught %d and %d of %d, along x %d, pulls rms %.2f\n",
               alarms, caught_high, caught_low, kSeeds, along, std::sqrt(squares / kSeeds));
@@ -121,8 +121,8 @@ struct FastRun {
 TEST(CompareModels, SplitsTheDropIntoCorrectionsThatAddUp) {
   const FastRun run;
   const FlowSetup setup = observed(kChannel, kWater);
-  const ModelComparison found = compare_models(setup, run.trial.flow_rate, run.state, run.reading,
-                                               kSection, all_models());
+  const ModelComparison found =
+      compare_models(setup, run.trial.flow_rate, run.state, run.reading, kSection, all_models());
   ASSERT_EQ(found.models.size(), 7U);
   ASSERT_EQ(found.corrections.size(), 5U);
   double sum = 0.0;

@@ -21,9 +21,8 @@ CoupledTrial exact_trial() {
 TEST(InferFlowRate, RecoversTheFlowRateOfAnExactReading) {
   const CoupledTrial trial = exact_trial();
   const Profile state = trial.state(trial.fine_pressure());
-  const InferredFlow found =
-      infer_flow_rate(observed(kChannel, kOil), flow::FlowModel::creeping, state,
-                      trial.reading(state), kSection);
+  const InferredFlow found = infer_flow_rate(observed(kChannel, kOil), flow::FlowModel::creeping,
+                                             state, trial.reading(state), kSection);
   // What is left: the curves between 16 levels (0.1 %), stations 0.6 mm apart (0.05 %).
   EXPECT_NEAR(found.value.value / kOilFlow.si(), 1.0, 2e-3);
   EXPECT_LE(found.steps, 10);
@@ -40,7 +39,8 @@ TEST(InferFlowRate, RecoversTheFlowRateWhereInertiaCounts) {
   const double momentum =
       infer_flow_rate(setup, flow::FlowModel::momentum, state, reading, kSection).value.value;
   EXPECT_NEAR(momentum / trial.flow_rate.si(), 1.0, 4e-3);  // as above, inertia more curved
-  // Inertia gives pressure back where the gap closes... the creeping model must be off by per cents.
+  // Inertia gives pressure back where the gap closes... the creeping model must be off by per
+  // cents.
   const double creeping =
       infer_flow_rate(setup, flow::FlowModel::creeping, state, reading, kSection).value.value;
   EXPECT_GT(std::abs(creeping / trial.flow_rate.si() - 1.0), 0.01);
@@ -50,8 +50,8 @@ TEST(InferFlowRate, IsWithinTwoPerCentAndItsBarsCover95PerCent) {
   // Everything unknown is drawn with the width that is stated: maps, labels, gauge, the gap (0.3 %)
   // and the viscosity (0.5 %).
   const double viscosity_share = 0.005;
-  const FlowSetup setup = observed(
-      kChannel, kOil, {kHeightUncertainty, viscosity_share * kOil.viscosity, 0.0});
+  const FlowSetup setup =
+      observed(kChannel, kOil, {kHeightUncertainty, viscosity_share * kOil.viscosity, 0.0});
   constexpr int kSeeds = 200;
   int covered = 0, close = 0;
   double squares = 0.0, sum = 0.0, largest_bar = 0.0;
@@ -64,8 +64,8 @@ TEST(InferFlowRate, IsWithinTwoPerCentAndItsBarsCover95PerCent) {
     trial.channel.height = kChannel.height + truth.normal() * kHeightUncertainty;
     trial.fluid.viscosity = (1.0 + viscosity_share * truth.normal()) * kOil.viscosity;
     const Profile state = trial.state(trial.fine_pressure());
-    const InferredFlow found = infer_flow_rate(setup, flow::FlowModel::creeping, state,
-                                               trial.reading(state), kSection);
+    const InferredFlow found =
+        infer_flow_rate(setup, flow::FlowModel::creeping, state, trial.reading(state), kSection);
     const double error = found.value.value / kOilFlow.si() - 1.0;
     const double pull = error / found.relative_uncertainty();
     covered += std::abs(pull) <= kExpansion;
@@ -81,8 +81,9 @@ TEST(InferFlowRate, IsWithinTwoPerCentAndItsBarsCover95PerCent) {
   EXPECT_LT(2.0 * largest_bar, 0.024);  // gap 0.9 %, viscosity 0.5 %, maps: 1.1 %
   EXPECT_GE(close, 0.92 * kSeeds);      // 2 % is 1.8 of these sigma
   RecordProperty("covered", covered);
-  std::printf("Q: covered %d of %d, within 2 %%: %d, mean pull %.2f, rms %.2f, bar %.2f %%\n", covered,
-              kSeeds, close, sum / kSeeds, std::sqrt(squares / kSeeds), largest_bar * 100.0);
+  std::printf("Q: covered %d of %d, within 2 %%: %d, mean pull %.2f, rms %.2f, bar %.2f %%\n",
+              covered, kSeeds, close, sum / kSeeds, std::sqrt(squares / kSeeds),
+              largest_bar * 100.0);
 }
 
 TEST(InferFlowRate, GainsFromAllStationsOverTheTwoEnds) {
@@ -97,9 +98,9 @@ TEST(InferFlowRate, GainsFromAllStationsOverTheTwoEnds) {
   const Array1 ends = (reading.x == reading.x[kSection.first]).cast<double>() -
                       (reading.x == reading.x[kSection.last]).cast<double>();
   const double drop = (ends * reading.pressure).sum();
-  const double two_ends =
-      std::sqrt(ends.square().matrix().dot(
-          (state.uncertainty.independent / reading.slope).square().matrix())) / drop;
+  const double two_ends = std::sqrt(ends.square().matrix().dot(
+                              (state.uncertainty.independent / reading.slope).square().matrix())) /
+                          drop;
   EXPECT_LT(all.relative_uncertainty(), two_ends);
 }
 
@@ -148,9 +149,9 @@ TEST(InferFlowRate, SaysThatAWrongShapeOfPressureDoesNotFit) {
   Array1 bent = trial.fine_pressure();  // as a narrow place half way would have it
   for (Index i = 0; i < CoupledTrial::kFine / 2; ++i) bent[i] += 600.0;
   const Profile bad = trial.state(bent);
-  EXPECT_LT(infer_flow_rate(setup, flow::FlowModel::creeping, bad, trial.reading(bad), kSection)
-                .fit.tail,
-            1e-6);
+  EXPECT_LT(
+      infer_flow_rate(setup, flow::FlowModel::creeping, bad, trial.reading(bad), kSection).fit.tail,
+      1e-6);
 }
 
 }  // namespace

@@ -21,14 +21,15 @@ FlowPrediction predict(const CoupledTrial& trial, const FlowSetup& setup, FlowMo
 
 TEST(PredictFlow, MeetsTheCoupledTruthAtAFlowRateNeverRun) {
   CoupledTrial trial;  // no errors: seed 0
+  trial.x = Array1::LinSpaced(125, 0.05e-3, trial.wall.length - 0.05e-3);
   const FlowSetup setup = observed(kChannel, kOil);
   for (const double share : {0.3, 1.0, 1.4}) {
     trial.flow_rate = share * kOilFlow;
     const Array1 truth = trial.fine_pressure();
     const FlowPrediction found = predict(trial, setup, FlowModel::creeping, trial.flow_rate);
-    // Curves between 16 levels, zeta straight between stations 0.6 mm apart and to the ends: 0.3 %.
+    // Curves between 16 levels (0.1 %), zeta straight between stations 0.12 mm apart.
     for (Index i = 0; i < found.x.size(); ++i) {
-      EXPECT_NEAR(found.pressure[i], trial.at(truth, found.x[i]), 3e-3 * truth[0]) << share;
+      EXPECT_NEAR(found.pressure[i], trial.at(truth, found.x[i]), 1.5e-3 * truth[0]) << share;
     }
     EXPECT_EQ(found.flags.maxCoeff(), 0);
     EXPECT_NEAR(found.drop.value, found.pressure[0] - trial.outlet.si(), 1e-6);
@@ -45,7 +46,8 @@ TEST(PredictFlow, MeetsTheTruthWithInertia) {
   const FlowSetup setup = observed(kChannel, kWater);
   const FlowPrediction found = predict(trial, setup, FlowModel::momentum, trial.flow_rate);
   for (Index i = 0; i < found.x.size(); ++i) {
-    EXPECT_NEAR(found.pressure[i], trial.at(truth, found.x[i]), 4e-3 * truth[0]);  // as above
+    EXPECT_NEAR(found.pressure[i], trial.at(truth, found.x[i]),
+                4e-3 * truth[0]);  // stations 0.6 mm apart
   }
   EXPECT_GT(found.speed_index.maxCoeff(), 0.0);
   EXPECT_LT(found.speed_index.maxCoeff(), 1.0);
@@ -137,20 +139,27 @@ TEST(PredictFlow, FlagsWhatLiesBeyondTheCalibrationAndRefusesWhatIsFarBeyond) {
 }
 
 TEST(PredictFlow, SaysWhereTheFlowChokes) {
+  // A wall as soft as foil, 3 Pa/um, and a fluid so thin that friction does not hold it open:
+  // the speed of a pulse is sqrt(h/(rho dzeta/dp)) = 0.7 m/s, which 20 mL/min pass.
   CoupledTrial trial;
-  trial.wall.stiffness = 3e6;  // a sheet as soft as foil: 3 Pa/um
-  trial.wall.stretching = 0.0;
+  trial.wall.stiffness = 3e6;
+  trial.wall.stretching = 1e9;  // nothing
   std::vector<Level> levels;
-  for (const double p : {0.0, 20.0, 40.0, 60.0, 80.0, 100.0, 120.0}) {
+  for (int k = 0; k <= 10; ++k) {
+    const double p = 40.0 * k;
     levels.push_back(test::level(
-        "h" + std::to_string(levels.size()), p, p == 0.0 ? 0.0 : 0.1,
+        "h" + std::to_string(k), p, k == 0 ? 0.0 : 0.1,
         test::exact_profile(trial.x, [&](double at) { return trial.wall.zeta(at, p); })));
   }
-  FlowSetup setup = observed(kChannel, kWater);
+  FlowSetup setup = observed(kChannel, {0.02 * mPa_s, 998.0 * kg_per_m3});
   setup.tables = nullptr;
   const auto curves = calibration::fit_curves(levels);
+  const auto predicted = [&](FlowRate flow_rate) {
+    return predict_flow(curves, setup, FlowModel::momentum, flow_rate, {20.0 * Pa, {}});
+  };
+  EXPECT_LT(predicted(5.0 * mL_per_min).speed_index.maxCoeff(), 0.5);
   try {
-    predict_flow(curves, setup, FlowModel::momentum, 100.0 * mL_per_min, {5.0 * Pa, {}});
+    predicted(20.0 * mL_per_min);
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("chokes"), std::string::npos) << error.what();

@@ -107,7 +107,7 @@ Uncertainty CurvedWall::errors(const Array1& pressure, const inversion::GaugeErr
   }
   inversion::ReadPressureOptions options;
   options.ambiguity_reach = 0.0;
-  options.largest_uncertainty = std::numeric_limits<double>::max();  // every error counts here
+  options.largest_uncertainty = 1e6;  // ranges: every error counts here
   const inversion::PressureReading reading =
       inversion::read_pressure(curves_, state, gauge, options);
   Uncertainty errors;
