@@ -5,9 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/flow/channel_resistance.hpp"
 #include "manoscope/flow/section_flow.hpp"
 #include "manoscope/validation/wall_answer.hpp"
 
@@ -119,13 +121,28 @@ class Coupling {
     }
     return result;
   }
+  /// Means of the speed index over stretches as long as the wall's own response, w/pi: what is
+  /// shorter the wall does not follow.
+  Array1 spread_index(const Array1& p) const {
+    const Array1 local = speed_index(p);
+    const Array1& x = wall_.x();
+    const double half = 0.5 * setup_.channel.width.si() / std::numbers::pi;
+    Array1 result(p.size());
+    for (Index i = 0; i < p.size(); ++i) {
+      const double from = std::max(0.0, x[i] - half), to = std::min(x[p.size() - 1], x[i] + half);
+      const Array1 weights = flow::interval_weights(x, Length::from_si(from), Length::from_si(to));
+      result[i] = (weights * local).sum() / (to - from);
+    }
+    return result;
+  }
   void refuse_choking(const Array1& p) const {
+    if (!has_inertia(model_)) return;
     Index place = 0;
-    const double greatest = speed_index(p).maxCoeff(&place);
+    const double greatest = spread_index(p).maxCoeff(&place);
     if (greatest < 1.0) return;
     throw InputError(
         kWhere,
-        fmt::format("the flow chokes at x = {:.4g} mm: its speed index S^2 is {:.3g} at {:.4g} "
+        fmt::format("the flow chokes about x = {:.4g} mm: its speed index S^2 is {:.3g} at {:.4g} "
                     "mL/min",
                     wall_.x()[place] * 1e3, greatest, flow_rate_.in(mL_per_min)),
         fmt::format("Such a state cannot be steady. Check the curves and the units, or give less "
@@ -223,6 +240,7 @@ class Coupling {
       if (wall_.slope(i, p[i]) < 0.0) flags |= PredictionFlag::falling_curve;
       doubt = doubt || flags != 0;
       if (modelled.flags[i] != 0) flags |= PredictionFlag::separated;
+      if (result.speed_index[i] >= 1.0) flags |= PredictionFlag::nearly_choked;
     }
   }
 

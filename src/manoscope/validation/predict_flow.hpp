@@ -36,6 +36,8 @@ struct PredictionFlag {
   static constexpr FlagBits falling_curve = 4;
   /// A march met backflow here or upstream.
   static constexpr FlagBits separated = 8;
+  /// S^2 >= 1 here, but not over a stretch as long as the wall's own response.
+  static constexpr FlagBits nearly_choked = 16;
 };
 
 /// Pressure at the outlet, x = length.
@@ -78,8 +80,9 @@ struct FlowPrediction {
 /// curves do: near the clamped ends of a tensioned wall p(x) is smoothed over w/pi, which moves
 /// zeta there by p'' (w/pi)^2 d zeta/dp but the drop hardly. Between stations zeta is straight.
 ///
-/// @throws InputError where the flow chokes (momentum models: S^2 >= 1), saying where and below
-///         which flow rate it would not; where p leaves the calibrated range by more than
+/// @throws InputError where the flow chokes (models with inertia: the mean of S^2 over w/pi, which
+///         the wall's tension holds together, is 1 or more), saying where and below which flow rate
+///         it would not; where p leaves the calibrated range by more than
 ///         largest_extrapolation; where no steady state is found; if no station has a curve.
 FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
                             flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet = {},
