@@ -82,8 +82,6 @@ class Comparison {
       return without_verdict(found, "the gap has no stated uncertainty");
     }
     found.en_number = std::abs(found.difference) / (kExpansion * found.uncertainty);
-    found.agreement = found.en_number <= 1.0 ? Agreement::agree : Agreement::differ;
-
     ErrorTable pieces(pieces_.rows());
     add_model(pieces, 1.0, pieces_, run, setup_, state_);
     add_reading(pieces, -1.0, pieces_, reading_, state_);
@@ -91,6 +89,9 @@ class Comparison {
     const Array1 read = (pieces_ * reading_.pressure.matrix()).array();
     found.along =
         chi_square(modelled - read, pieces.covariance(), kResolution * std::abs(found.drop.value));
+    found.agreement = found.en_number > 1.0                    ? Agreement::differ
+                      : found.along.tail < options_.along_tail ? Agreement::drop_only
+                                                               : Agreement::agree;
     found.words = verdict(found, extracted);
     return found;
   }
@@ -109,15 +110,25 @@ class Comparison {
     const std::string sides =
         fmt::format("the model gives {} {} than the wall", share_text(found.difference, whole),
                     found.difference < 0.0 ? "less" : "more");
-    std::string words =
-        found.agreement == Agreement::agree
-            ? fmt::format("agree within {}: {} (E_n {:.2f})", expanded, sides, found.en_number)
-            : fmt::format("do not agree: {}, {:.1f} times the expanded uncertainty of {}", sides,
-                          found.en_number, expanded);
-    if (found.along.tail < options_.along_tail) {
-      words +=
-          fmt::format("; along x p differs by more than its bars (chi-square {:.0f} of {:.0f})",
-                      found.along.value, found.along.dof);
+    const std::string along =
+        fmt::format("along x p differs by more than its bars (chi-square {:.0f} of {:.0f})",
+                    found.along.value, found.along.dof);
+    std::string words;
+    switch (found.agreement) {
+      case Agreement::agree:
+        words = fmt::format("agree within {}: {} (E_n {:.2f})", expanded, sides, found.en_number);
+        break;
+      case Agreement::drop_only:
+        words = fmt::format("only the drop agrees, within {}: {} (E_n {:.2f}), but {}", expanded,
+                            sides, found.en_number, along);
+        break;
+      case Agreement::differ:
+        words = fmt::format("do not agree: {}, {:.1f} times the expanded uncertainty of {}", sides,
+                            found.en_number, expanded);
+        if (found.along.tail < options_.along_tail) words += "; " + along;
+        break;
+      case Agreement::no_verdict:
+        break;
     }
     if (!found.valid) {
       words += fmt::format("; at Re h/l = {:.2g} the model itself may be {:.2g} % off",

@@ -31,7 +31,13 @@ struct CompareModelsOptions {
   void validate() const;
 };
 
-enum class Agreement { agree, differ, no_verdict };
+/// What a comparison says.
+enum class Agreement {
+  agree,       ///< the drop, and p(x) along x
+  drop_only,   ///< the drop alone: errors of the model that cancel look like this
+  differ,      ///< not even the drop
+  no_verdict,  ///< nothing can be said
+};
 
 /// One flow model against the reading of one run.
 struct ModelAgreement {
@@ -83,9 +89,10 @@ struct ModelComparison {
 ///
 ///   u(m - e)^2 = u(m)^2 + u(e)^2 - 2 cov(m, e),  E_n = |m - e| / (2 u(m - e))
 ///
-/// "agree" where E_n <= 1. Without a stated uncertainty of the gap there is no verdict: 1 % of 2 h0
-/// moves the drop by 3 %. For errors that are normal with the stated widths, E_n > 1 in 4.6 % of
-/// runs whose model is true. chi-square along x asks the same of p(x) up to a constant.
+/// "agree" where E_n <= 1 and chi-square along x, which asks the same of p(x) up to a constant, is
+/// not larger than chance makes it (along_tail). Without a stated uncertainty of the gap there is
+/// no verdict: 1 % of 2 h0 moves the drop by 3 %. For errors that are normal with the stated
+/// widths, E_n > 1 in 4.6 % of runs whose model is true.
 ///
 /// Source: ISO/IEC 17043 (E_n); JCGM 102 (covariance). Cost: that of the models, and n stations
 /// squared for their derivatives.
