@@ -20,10 +20,10 @@ namespace {
 
 class TwinFlow : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    solved_ = new twin::SolvedScenario(twin::solve_scenario(scenario()));
+  static const twin::SolvedScenario& solved() {
+    static const twin::SolvedScenario once = twin::solve_scenario(scenario());
+    return once;
   }
-  static void TearDownTestSuite() { delete solved_; }
   static const twin::Scenario& scenario() {
     static const twin::Scenario demo = twin::demo_scenario();
     return demo;
@@ -39,10 +39,10 @@ class TwinFlow : public ::testing::Test {
   }
   calibration::ConstitutiveCurves curves() const {
     std::vector<calibration::Level> levels;
-    for (std::size_t k = 0; k < solved_->levels.size(); ++k) {
+    for (std::size_t k = 0; k < solved().levels.size(); ++k) {
       const double p = scenario().levels[k].si();
       levels.push_back(test::level("h" + std::to_string(k), p, p == 0.0 ? 0.0 : 1.0,
-                                   exact(x_, solved_->levels[k].wall.deflection(x_))));
+                                   exact(x_, solved().levels[k].wall.deflection(x_))));
     }
     return calibration::fit_curves(levels);
   }
@@ -56,14 +56,11 @@ class TwinFlow : public ::testing::Test {
     result.uncertainty = {0.5 * um};
     return result;
   }
-
-  static twin::SolvedScenario* solved_;
 };
-twin::SolvedScenario* TwinFlow::solved_ = nullptr;
 
 TEST_F(TwinFlow, DropIsPredictedFromTheCurvesAlone) {
   const auto all = curves();
-  for (const twin::SolvedScenario::Run& run : solved_->runs) {
+  for (const twin::SolvedScenario::Run& run : solved().runs) {
     const double truth = (run.flow.inlet() - run.flow.outlet()).si();
     const FlowPrediction found = predict_flow(all, setup(), flow::FlowModel::momentum,
                                               run.flow.flow_rate, {run.flow.outlet(), {}});
@@ -74,7 +71,7 @@ TEST_F(TwinFlow, DropIsPredictedFromTheCurvesAlone) {
 
 TEST_F(TwinFlow, FlowRateIsReadOffTheDeflectionAlone) {
   const auto all = curves();
-  for (const twin::SolvedScenario::Run& run : solved_->runs) {
+  for (const twin::SolvedScenario::Run& run : solved().runs) {
     const Profile state = exact(x_, run.flow.deflection(x_));
     const inversion::PressureReading reading = inversion::read_pressure(all, state);
     const auto section =

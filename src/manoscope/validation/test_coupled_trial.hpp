@@ -35,7 +35,7 @@ struct CoupledTrial : Trial {
   Pressure outlet = 600.0 * Pa;
   bool inertia = false;  ///< with the gain of momentum of developed profiles
 
-  static constexpr Index kFine = 621;  // 25 um: the trapezoid rule leaves below 1e-5 inside
+  static constexpr Index kFine = 311;  // 50 um: the trapezoid rule leaves below 1e-4 inside
 
   /// p on the fine grid.
   Array1 fine_pressure() const {
