@@ -39,8 +39,7 @@ TEST(InferFlowRate, RecoversTheFlowRateWhereInertiaCounts) {
   const double momentum =
       infer_flow_rate(setup, flow::FlowModel::momentum, state, reading, kSection).value.value;
   EXPECT_NEAR(momentum / trial.flow_rate.si(), 1.0, 4e-3);  // as above, inertia more curved
-  // Inertia gives pressure back where the gap closes... the creeping model must be off by per
-  // cents.
+  // The gap closes downstream and the fluid gains speed: without that, Q is off by per cents.
   const double creeping =
       infer_flow_rate(setup, flow::FlowModel::creeping, state, reading, kSection).value.value;
   EXPECT_GT(std::abs(creeping / trial.flow_rate.si() - 1.0), 0.01);
@@ -80,7 +79,6 @@ TEST(InferFlowRate, IsWithinTwoPerCentAndItsBarsCover95PerCent) {
   EXPECT_NEAR(std::sqrt(squares / kSeeds), 1.0, 0.15);
   EXPECT_LT(2.0 * largest_bar, 0.024);  // gap 0.9 %, viscosity 0.5 %, maps: 1.1 %
   EXPECT_GE(close, 0.92 * kSeeds);      // 2 % is 1.8 of these sigma
-  RecordProperty("covered", covered);
   std::printf("Q: covered %d of %d, within 2 %%: %d, mean pull %.2f, rms %.2f, bar %.2f %%\n",
               covered, kSeeds, close, sum / kSeeds, std::sqrt(squares / kSeeds),
               largest_bar * 100.0);
