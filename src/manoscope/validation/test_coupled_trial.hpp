@@ -97,8 +97,8 @@ inline FlowSetup observed(const flow::Channel& channel, const flow::Fluid& fluid
   setup.shape = flow::WallShape::rigid();
   setup.inlet_spread = 0.0;
   if (channel != kChannel) return with_tables(setup, -1.0 * um, 32.0 * um);
-  static const auto once = with_tables(setup, -1.0 * um, 32.0 * um).tables;  // free of the fluid
-  setup.tables = once;
+  static const auto kOnce = with_tables(setup, -1.0 * um, 32.0 * um).tables;  // free of the fluid
+  setup.tables = kOnce;
   return setup;
 }
 
