@@ -65,8 +65,15 @@ FlowModel flow_model(std::string_view name) {
 }
 
 ModelledPressure pressure_along(FlowModel model, const FlowCase& flow) {
-  const FlowModelInfo& info = flow_model_info(model);
-  check(info, flow);
+  check(flow_model_info(model), flow);
+  if (!needs_sections(model)) return pressure_along(model, flow, SectionsAlong{});
+  const SectionFamily family = SectionFamily::of(flow.channel, flow.shape, flow.zeta);
+  return pressure_along(model, flow, sections_along(family, flow.x, flow.zeta));
+}
+
+ModelledPressure pressure_along(FlowModel model, const FlowCase& flow,
+                                const SectionsAlong& sections) {
+  check(flow_model_info(model), flow);
   const double rest = rest_to_outlet(flow);
   const Index n = flow.x.size();
   ModelledPressure result{model, Array1::Zero(n), Flags1::Zero(n), {}};
@@ -77,8 +84,7 @@ ModelledPressure pressure_along(FlowModel model, const FlowCase& flow) {
                                                flow.zeta, flow.outlet_pressure, options);
     return result;
   }
-  const SectionFamily family = SectionFamily::of(flow.channel, flow.shape, flow.zeta);
-  const SectionsAlong sections = sections_along(family, flow.x, flow.zeta);
+  MANO_ASSERT(sections.x.size() == n);
   const double last_resistance = flow.fluid.viscosity.si() / sections.conductance(n - 1);
   const double outlet = flow.outlet_pressure.si() + rest * last_resistance * flow.flow_rate.si();
   const auto from_drop = [&](const Array1& drop) {

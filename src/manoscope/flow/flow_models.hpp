@@ -10,6 +10,7 @@
 #include "manoscope/flow/channel.hpp"
 #include "manoscope/flow/marching.hpp"
 #include "manoscope/flow/roof.hpp"
+#include "manoscope/flow/section_family.hpp"
 
 namespace manoscope::flow {
 
@@ -97,5 +98,14 @@ struct ModelledPressure {
 /// @throws InputError if shapes differ, stations do not reach the outlet, a gap is not positive, or
 ///         the flow runs backward through a model that marches.
 ModelledPressure pressure_along(FlowModel model, const FlowCase& flow);
+
+/// The same with the sections at the stations solved already; `paper` and `section-march` do not
+/// use them.
+/// @param sections  one a station of flow.x, for the gap of the case.
+ModelledPressure pressure_along(FlowModel model, const FlowCase& flow,
+                                const SectionsAlong& sections);
+
+/// Whether a model takes its sections from a table: all but `paper`.
+constexpr bool needs_sections(FlowModel model) { return model != FlowModel::paper; }
 
 }  // namespace manoscope::flow

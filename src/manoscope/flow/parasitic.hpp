@@ -16,7 +16,8 @@ struct RigidPassage {
 ///
 /// Source: the fully developed part of what the paper takes from flow simulations (its appendix A).
 /// Validity: fully developed laminar flow all along, so length >> 0.05 Re Dh. Developing flow,
-/// bends, contractions and expansions are not in it, so it is a lower bound at high flow rates.
+/// bends, contractions and expansions are not in it (passage_terms() has them), so it is a lower
+/// bound at high flow rates.
 /// @throws InputError if a size or the viscosity is not positive.
 Pressure passage_drop(Viscosity eta, FlowRate flow_rate, const RigidPassage& passage);
 

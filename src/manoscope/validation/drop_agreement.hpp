@@ -7,6 +7,7 @@
 #include "manoscope/flow/channel.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
+#include "manoscope/validation/flow_setup.hpp"
 
 namespace manoscope::validation {
 
@@ -18,13 +19,6 @@ struct DropAgreement {
   /// E_n number of ISO/IEC 17043; agreement where it is at most 1. NaN where no uncertainty at all
   /// is stated, for then there is no verdict.
   double en_number = 0.0;
-};
-
-/// Standard uncertainties of what QR takes from outside the maps. 0 = taken as exact.
-struct FlowUncertainty {
-  Length height{};         ///< of the gap 2 h0
-  Viscosity viscosity{};   ///< of eta
-  double flow_rate = 0.0;  ///< of Q, relative: one error of the pump, common to all runs
 };
 
 /// Compares dp_e with Q R over the test section of one run.

@@ -1,0 +1,106 @@
+#include "manoscope/validation/flow_setup.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::validation {
+
+FlowSetup with_tables(FlowSetup setup, Length least, Length greatest) {
+  setup.tables = std::make_shared<const flow::SectionTables>(
+      flow::SectionTables::of(setup.channel, setup.shape, least, greatest));
+  return setup;
+}
+
+std::shared_ptr<const flow::SectionTables> tables_for(const FlowSetup& setup, const Array1& zeta) {
+  if (setup.tables) return setup.tables;
+  return with_tables(setup, Length::from_si(zeta.minCoeff()), Length::from_si(zeta.maxCoeff()))
+      .tables;
+}
+
+WallLine wall_line(const Profile& state, Length length) {
+  std::vector<double> x, zeta;
+  WallLine line;
+  const auto add = [&](double at, double deflection, Index station) {
+    x.push_back(at);
+    zeta.push_back(deflection);
+    line.station.push_back(station);
+  };
+  const double l = length.si();
+  for (Index ix = 0; ix < state.x.size(); ++ix) {
+    const double at = state.x[ix];
+    if (state.flags[ix] != 0 || at < 0.0 || at > l) continue;
+    if (x.empty() && at > 0.0) add(0.0, 0.0, kClampedEnd);
+    add(at, state.zeta[ix], ix);
+  }
+  if (x.empty()) add(0.0, 0.0, kClampedEnd);
+  if (x.back() < l) add(l, 0.0, kClampedEnd);
+  const auto n = static_cast<Index>(x.size());
+  line.x = Eigen::Map<const Array1>(x.data(), n);
+  line.zeta = Eigen::Map<const Array1>(zeta.data(), n);
+  return line;
+}
+
+flow::FlowCase flow_case(const FlowSetup& setup, FlowRate flow_rate, const WallLine& line) {
+  flow::FlowCase flow;
+  flow.channel = setup.channel;
+  flow.fluid = setup.fluid;
+  flow.flow_rate = flow_rate;
+  flow.x = line.x;
+  flow.zeta = line.zeta;
+  flow.shape = setup.shape;
+  flow.inlet = setup.inlet;
+  flow.developing_length = setup.developing_length;
+  return flow;
+}
+
+Array1 inlet_rise(const FlowSetup& setup, const flow::FlowCase& flow) {
+  if (!(setup.inlet_spread >= 0.0 && setup.inlet_spread <= 1.0)) {
+    throw InputError("inlet spread", fmt::format("is {}", setup.inlet_spread),
+                     "Give 0 for a known profile, up to 1 for one between developed and uniform");
+  }
+  if (setup.inlet_spread == 0.0 || !(flow.flow_rate.si() > 0.0)) {
+    return Array1::Zero(flow.x.size());
+  }
+  const auto tables = tables_for(setup, flow.zeta);
+  flow::FlowCase other = flow;
+  const auto solve = [&](flow::InletProfile inlet) {
+    other.inlet = inlet;
+    return flow::pressure_along(flow::FlowModel::plane_march, other, *tables).pressure;
+  };
+  const Array1 rise = solve(flow::InletProfile::uniform) - solve(flow::InletProfile::developed);
+  if (rise.isFinite().all()) return setup.inlet_spread * rise;
+  throw InputError("inlet spread", "the march from a uniform or a developed profile broke down",
+                   "Smooth the deflection, or state the inlet profile with a spread of 0");
+}
+
+ModelledRun modelled_run(flow::FlowModel model, const FlowSetup& setup, FlowRate flow_rate,
+                         const WallLine& line) {
+  return modelled_run(model, setup, flow_rate, line,
+                      inlet_rise(setup, flow_case(setup, flow_rate, line)));
+}
+
+ModelledRun modelled_run(flow::FlowModel model, const FlowSetup& setup, FlowRate flow_rate,
+                         const WallLine& line, const Array1& inlet_rise) {
+  const flow::FlowCase flow = flow_case(setup, flow_rate, line);
+  ModelledRun run;
+  run.line = line;
+  if (flow::needs_sections(model)) {
+    run.sensitivity = flow::flow_sensitivity(model, flow, *tables_for(setup, line.zeta));
+  } else {
+    run.sensitivity = flow::flow_sensitivity(model, flow);
+  }
+  run.error = flow::model_error(model, flow);
+  const bool marches =
+      model == flow::FlowModel::plane_march || model == flow::FlowModel::section_march;
+  const bool starts_uniform = model == flow::FlowModel::developing ||
+                              (marches && setup.inlet == flow::InletProfile::uniform);
+  // About the end of a rectangular distribution the mean square is a third of its width squared.
+  run.inlet_effect = (starts_uniform ? -1.0 : 1.0) / std::numbers::sqrt3 * inlet_rise;
+  return run;
+}
+
+}  // namespace manoscope::validation

@@ -1,0 +1,92 @@
+#pragma once
+
+#include "manoscope/calibration/constitutive_curves.hpp"
+#include "manoscope/core/profile.hpp"
+#include "manoscope/core/uncertainty.hpp"
+#include "manoscope/inversion/read_pressure.hpp"
+#include "manoscope/validation/flow_setup.hpp"
+
+namespace manoscope::validation {
+
+struct PredictFlowOptions {
+  /// How far p may leave the calibrated range of a station, as a share of that range, on the
+  /// straight continuation of its curve.
+  double largest_extrapolation = 0.1;
+  double tolerance = 1e-7;  ///< of p, as a share of the largest
+  int most_steps = 60;      ///< of Newton's method
+
+  template <class Visitor>
+  void describe(Visitor&& visit) {
+    visit("largest-extrapolation", largest_extrapolation,
+          "how far the pressure may leave the calibrated range, as a share of it");
+    visit("tolerance", tolerance, "change of p at which a prediction has settled, relative");
+    visit("most-steps", most_steps, "most steps of Newton's method");
+  }
+  /// @throws InputError naming the first option out of range.
+  void validate() const;
+};
+
+/// What to know of a predicted pressure. Bits per station; 0 = good.
+struct PredictionFlag {
+  /// The curve of this station ends before this pressure: a straight continuation.
+  static constexpr FlagBits out_of_calibration = 1;
+  /// A station downstream is out of calibration, or its curve falls: p here hangs on it.
+  static constexpr FlagBits downstream_doubt = 2;
+  /// The curve falls with pressure here: the wall may jump, and more than one state is possible.
+  static constexpr FlagBits falling_curve = 4;
+  /// A march met backflow here or upstream.
+  static constexpr FlagBits separated = 8;
+  /// S^2 >= 1 here, but not over a stretch as long as the wall's own response.
+  static constexpr FlagBits nearly_choked = 16;
+};
+
+/// Pressure at the outlet, x = length.
+struct Outlet {
+  Pressure pressure{};
+  Pressure uncertainty{};  ///< standard
+};
+
+/// State of wall and fluid at a flow rate that was not run. Arrays have shape (n).
+struct FlowPrediction {
+  flow::FlowModel model = flow::FlowModel::paper;
+  FlowRate flow_rate{};
+  Array1 x;                      ///< m, stations with a curve and the clamped ends
+  std::vector<Index> station;    ///< of the curves; kClampedEnd for an end
+  Array1 pressure;               ///< Pa
+  Uncertainty uncertainty;       ///< Pa, of pressure
+  Array1 zeta;                   ///< m
+  Uncertainty zeta_uncertainty;  ///< m, same error variables
+  Flags1 flags;                  ///< bits of PredictionFlag
+  Estimate drop;                 ///< Pa, p(0) - p(length)
+  Array1 speed_index;            ///< S^2, flow::speed_index(); 0 for models without inertia
+  flow::ModelError error;        ///< stated error of the model at this flow
+  int steps = 0;
+};
+
+/// Predicts p(x) and zeta(x) at a flow rate from the measured constitutive curves and a flow model.
+///
+///   p = m(zeta; Q),  zeta(x) = curve of the station at p(x)
+///
+/// with m of flow::pressure_along() and no model of the wall. Newton's method with dm/dzeta of the
+/// model (of `momentum` for the marches), from the flow past the undeflected wall.
+///
+/// Uncertainty, to first order: (1 - m' s) dp = m' dzeta + dm, s = d zeta/dp of the curves,
+///   dzeta  errors of the curves at fixed p: maps, labels, gauge and interpolation, by the same
+///          names as in a reading of the same curves
+///   dm     "channel height", "viscosity", "flow rate", "outlet pressure", "flow model <name>" and
+///          its bend, "inlet profile"
+///
+/// Validity: that of the model, and a wall that answers to the pressure at its own place, as its
+/// curves do: near the clamped ends of a tensioned wall p(x) is smoothed over w/pi, which moves
+/// zeta there by p'' (w/pi)^2 d zeta/dp but the drop hardly. Between stations zeta is straight.
+///
+/// @throws InputError where the flow chokes (models with inertia: the mean of S^2 over w/pi, which
+///         the wall's tension holds together, is 1 or more), saying where and below which flow rate
+///         it would not; where p leaves the calibrated range by more than
+///         largest_extrapolation; where no steady state is found; if no station has a curve.
+FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
+                            flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet = {},
+                            const inversion::GaugeErrors& gauge = {},
+                            const PredictFlowOptions& options = {});
+
+}  // namespace manoscope::validation
