@@ -23,7 +23,7 @@ SEEDS ?= 5
 TIDY_COMMITS ?= 6
 # `make asan` leaves out tests that took longer than this in `make test`: ten times as long under the
 # sanitizers, which see the same code on smaller grids and in these.
-ASAN_SECONDS ?= 0.7
+ASAN_SECONDS ?= 0.5
 ASAN_KEEPS = Measure.IsTheSameOnOne|LeavesSilentStations|Plan.LeavesOut|ReadExperiment.Answers
 ASAN_KEEPS := $(ASAN_KEEPS)|Hdf5Worker.Damaged|FrameTexture.TellsShifts|FollowPressure.OfABuckled
 
