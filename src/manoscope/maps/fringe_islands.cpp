@@ -193,7 +193,7 @@ class WallAround {
     }
     if (n == 0) return;
     const double rise = sum.maxCoeff() - sum.minCoeff();
-    if (rise > 0.0) shapes_.push_back((sum - sum.minCoeff()) / rise);
+    if (rise > 0.0) shapes_.emplace_back((sum - sum.minCoeff()) / rise);
   }
   double height(Index iz, Index i) const { return map_.height(iz, span_.first + i); }
   Index n_terms() const { return 2 + static_cast<Index>(shapes_.size()); }
