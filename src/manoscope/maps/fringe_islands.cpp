@@ -21,7 +21,8 @@ constexpr double kNoises = 5.0;  // deviations of the noise that a pixel may be 
 /// Pixels [first, last] of one row between a jump and the same jump back.
 struct Run {
   Index iz, first, last;
-  int order;  ///< half wavelengths
+  int order;            ///< half wavelengths
+  bool closed = false;  ///< both jumps are seen; else one end lies at missing pixels
 };
 
 /// Touching runs of one order, and the box around them.
@@ -71,7 +72,7 @@ std::vector<Run> find_runs(const ChannelMap& map, const std::vector<FringeJump>&
         jump.from - open->from <= kLongest && std::abs(open->size + jump.size) <= slack) {
       const int order = whole_order(0.5 * (open->size - jump.size), half, slack);
       if (order != 0) {
-        runs.push_back({jump.from / nx, open->to % nx, jump.from % nx, order});
+        runs.push_back({jump.from / nx, open->to % nx, jump.from % nx, order, true});
         open = nullptr;
         continue;
       }
@@ -266,6 +267,43 @@ Plan plan_island(const ChannelMap& map, const Island& island, double jump, doubl
   return plan;
 }
 
+/// The pixels of an island that its jumps outline by themselves: a closed run on nearly every row,
+/// each near the one before. None if they do not. A row between two runs takes part with the mean
+/// of their ends.
+std::vector<Index> outlined(const ChannelMap& map, const Island& island) {
+  constexpr std::size_t kFewestRows = 5;
+  constexpr Index kStep = 4;       // pixels from row to row: a disc of ten begins with as many
+  constexpr Index kMostApart = 2;  // rows
+  std::vector<Run> closed;
+  for (const Run& run : island.runs) {
+    if (!run.closed) continue;
+    if (!closed.empty()) {
+      const Run& before = closed.back();
+      const bool goes_on = run.iz > before.iz && run.iz - before.iz <= kMostApart &&
+                           std::abs(run.first - before.first) <= kStep * (run.iz - before.iz) &&
+                           std::abs(run.last - before.last) <= kStep * (run.iz - before.iz);
+      if (!goes_on) continue;
+      if (run.iz - before.iz == 2) {
+        closed.push_back({before.iz + 1, (before.first + run.first) / 2,
+                          (before.last + run.last) / 2, run.order, false});
+      }
+    }
+    closed.push_back(run);
+  }
+  const auto n_seen =
+      std::count_if(closed.begin(), closed.end(), [](const Run& r) { return r.closed; });
+  const auto n_closed = std::count_if(island.runs.begin(), island.runs.end(),
+                                      [](const Run& run) { return run.closed; });
+  if (closed.size() < kFewestRows || 5 * n_seen < 4 * n_closed) return {};
+  std::vector<Index> pixels;
+  for (const Run& run : closed) {
+    for (Index ix = run.first; ix <= run.last; ++ix) {
+      if (map.flags(run.iz, ix) == 0) pixels.push_back(run.iz * map.grid.nx + ix);
+    }
+  }
+  return pixels;
+}
+
 }  // namespace
 
 FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>& jumps,
@@ -284,6 +322,7 @@ FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>
     const Index n_patch = plan.count_true(island.runs, map.grid.nx);
     if (n_patch < kFewest || n_unclear > kMostUnclear * n_clear ||
         static_cast<double>(plan.lift.size()) < 0.8 * static_cast<double>(n_patch)) {
+      if (!outlined(map, island).empty()) ++found.outlined;
       continue;
     }
     for (const Index pixel : plan.lift) map.height.data()[pixel] -= jump;
@@ -293,6 +332,18 @@ FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>
     found.flagged_pixels += static_cast<Index>(plan.flag.size());
   }
   return found;
+}
+
+void mend_outlined_islands(ChannelMap& map, const std::vector<FringeJump>& jumps, Length noise,
+                           Length wavelength, FringePatches& found) {
+  const double half = 0.5 * wavelength.si();
+  for (const Island& island : join_runs(find_runs(map, jumps, half, noise.si()))) {
+    const std::vector<Index> pixels = outlined(map, island);
+    if (pixels.empty()) continue;
+    for (const Index pixel : pixels) map.height.data()[pixel] -= island.order * half;
+    ++found.mended;
+    found.mended_pixels += static_cast<Index>(pixels.size());
+  }
 }
 
 }  // namespace manoscope::maps

@@ -13,6 +13,7 @@ struct FringePatches {
   int mended = 0;   ///< patches lifted to their surroundings
   int flagged = 0;  ///< patches that are no plain jump, flagged PixelFlag::fringe_order
   Index mended_pixels = 0, flagged_pixels = 0;
+  int outlined = 0;  ///< patches that mend_fringe_islands() left to mend_outlined_islands()
 };
 
 /// Mends patches that the wall on both sides of them, along the flow, tells from itself.
@@ -36,5 +37,14 @@ struct FringePatches {
 /// @param noise  standard deviation of one pixel.
 FringePatches mend_fringe_islands(ChannelMap& map, const std::vector<FringeJump>& jumps,
                                   Length noise, Length wavelength);
+
+/// Mends what nothing else did: patches that jumps on both sides along the flow outline on nearly
+/// every one of five rows or more, whatever the surroundings. What such a row holds is lifted; a
+/// row or two at the rim of a patch, whose few pixels show no jumps, may stay.
+///
+/// Such patches lie between a flank and an end: their rows bend along the flow, and no two alike.
+/// @param found  gets what was mended.
+void mend_outlined_islands(ChannelMap& map, const std::vector<FringeJump>& jumps, Length noise,
+                           Length wavelength, FringePatches& found);
 
 }  // namespace manoscope::maps

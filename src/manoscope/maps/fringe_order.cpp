@@ -172,6 +172,11 @@ FringePatches mend_fringe_patches(ChannelMap& map, Length noise, std::optional<L
     }
   }
   for (const auto& [patch, is_bad] : bad) ++(is_bad ? found.flagged : found.mended);
+  if (found.outlined > 0) {
+    cuts.setZero();
+    jumps = find_fringe_jumps(map, least, sigma, cuts);
+    mend_outlined_islands(map, jumps, noise, *wavelength, found);
+  }
   return found;
 }
 
