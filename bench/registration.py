@@ -8,6 +8,7 @@ ENDS = np.array([0.1, 0.15, 0.2, 0.3, 0.4, 0.5])
 STRETCHES, LEAST_STRETCHES, LEAST_ENDS, PASSES = 12, 4, 4, 4
 LINE_START, LINE_END = 0.7, 1.3  # widths
 LEAST_MOVEMENT, MODEL_SHARE, FLOOR = 0.1, 8.0, 0.1e-6
+LEAST_FRACTIONS = 4
 
 
 class Stretches:
@@ -127,6 +128,39 @@ def at_edge(values, variances, first):
     return edge, np.sqrt((weight ** 2 * variance).sum() + model + FLOOR ** 2)
 
 
+def crossing_at(known, k, height):
+    """One fraction's distance at a height and its variance, by the maps that know it; or None.
+
+    Between their heights by straight lines; up to one step beyond the outermost its value, with what
+    it changes over that step as doubt.
+    """
+    above = sum(one[0] <= height for one in known)
+    if 0 < above < len(known):
+        low, high = known[above - 1], known[above]
+        share = (height - low[0]) / (high[0] - low[0])
+        return [(1.0 - share) * low[what][k] + share * high[what][k] for what in (1, 2)]
+    if len(known) < 2:
+        return None
+    nearest, following = (known[0], known[1]) if above == 0 else (known[-1], known[-2])
+    steps = abs((height - nearest[0]) / (following[0] - nearest[0]))
+    if not steps <= 1.0:
+        return None
+    change = steps * (following[1][k] - nearest[1][k])
+    return [nearest[1][k], nearest[2][k] + change * change]
+
+
+def inset_at(insets, height):
+    """The wall's inset at a height, its variance, and the first fraction from which it is known."""
+    distance, variance, first = np.zeros(ENDS.size), np.zeros(ENDS.size), 0
+    for k in range(ENDS.size):
+        crossing = crossing_at([inset for inset in insets if inset[3] <= k], k, height)
+        if crossing:
+            distance[k], variance[k] = crossing
+        else:
+            first = k + 1
+    return distance, variance, first
+
+
 def ends_of(reduced, shift, length, width):
     x, zeta, sigma = reduced["good"]
     return (find_end(x - shift, zeta, sigma, width),
@@ -158,8 +192,9 @@ def register(results, hydrostatic, length, width, pitch_x):
             more, doubt = at_edge(0.5 * (inlet[1] - outlet[1]), variance, first)
             shift += more
             shifts[i] = shift, doubt
-            if last == PASSES - 1 and first == 0:
-                insets.append((0.5 * (inlet[0] + outlet[0]), 0.5 * (inlet[1] + outlet[1]), variance))
+            if last == PASSES - 1:
+                insets.append((0.5 * (inlet[0] + outlet[0]), 0.5 * (inlet[1] + outlet[1]), variance,
+                               first))
     found = np.array([shift for shift in shifts if shift])
     if found.size == 0:
         return
@@ -167,7 +202,6 @@ def register(results, hydrostatic, length, width, pitch_x):
     offset = (weights * found[:, 0]).sum() / weights.sum()
     shifts = [(shift[0] - offset, shift[1]) if shift else None for shift in shifts]
     insets.sort(key=lambda inset: inset[0])
-    heights = np.array([inset[0] for inset in insets])
     for i, reduced in enumerate(results):
         if hydrostatic[i] or not insets:
             continue
@@ -179,13 +213,11 @@ def register(results, hydrostatic, length, width, pitch_x):
             shifts[i] = None
             if not end or abs(end[0]) < LEAST_MOVEMENT * largest:
                 break
-            above = int(np.clip(np.searchsorted(heights, end[0], side="right"), 1,
-                                max(1, heights.size - 1)))
-            low, high = insets[above - 1], insets[min(above, heights.size - 1)]
-            share = (end[0] - low[0]) / (high[0] - low[0]) if high[0] > low[0] else 0.0
-            share = min(1.0, max(0.0, share))
-            inset = [(1.0 - share) * low[k] + share * high[k] for k in (1, 2)]
-            more, doubt = at_edge(end[1] - inset[0], end[2] + inset[1], end[3])
+            inset = inset_at(insets, end[0])
+            first = max(end[3], inset[2])
+            if first > ENDS.size - LEAST_FRACTIONS:
+                break
+            more, doubt = at_edge(end[1] - inset[0], end[2] + inset[1], first)
             shift += more if at_inlet else -more
             shifts[i] = shift - offset, doubt
     assumed = pitch_x / np.sqrt(12.0)
