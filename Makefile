@@ -12,10 +12,10 @@ PACKAGES ?= yes
 PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
-FU.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
-        scripts tidy tidy-changed asan_FILES ?= 100000
+FUZZ_FILES ?= 100000
 SECONDS_PER_READER ?= 30
-# Of `make coverage` and `make goals`: its table, walls of each of six samples, experiments with each wall.
+# Of `make coverage` and `make goals`: their table, walls of each of six samples, experiments with
+# each wall.
 COVERAGE ?= $(BUILD)/coverage.csv
 WALLS ?= 14
 SEEDS ?= 5
@@ -150,8 +150,7 @@ fuzz: ## 100,000 damaged map files against every reader, under the sanitizers
 	@$(install) build libraries tests
 	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
 	@cmake --build --preset asan -j $(JOBS) --target mutate_maps
-	@build-asan/tests/mutate_maps --files $(FU.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
-        scripts tidy tidy-changed asan_FILES) --jobs $(JOBS)
+	@build-asan/tests/mutate_maps --files $(FUZZ_FILES) --jobs $(JOBS)
 
 fuzz-coverage: ## every reader under libFuzzer for SECONDS_PER_READER; needs clang
 	@$(install) build libraries tests fuzz

@@ -45,7 +45,7 @@ TEST_P(PixelLimit, IsNearlyReachedByWhatPixelNoiseDoesToTheReading) {
     RecordProperty(std::string("pixel_part_over_limit_") + stretch.name,
                    std::to_string(ours * ours / (least * least)));
     if (&stretch == &kStretches[0]) {
-      // Beyond the limit: a width average is no best estimate across the wall (1.2 to 1.5), levels
+      // Beyond the limit: a width average is no best estimate across the wall (1.2 to 1.4), levels
       // have noise as well (1.5), and neighbouring stations whose errors go together count for
       // fewer. Below it: a smooth p(x) is preferred to any with knots half a millimetre apart.
       EXPECT_LT(ours * ours, 5.0 * least * least);
