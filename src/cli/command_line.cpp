@@ -102,6 +102,15 @@ void Command::option(const std::string& names, std::string& value, const std::st
   impl_->app->add_option(names, value, help)->required(required)->type_name("TEXT");
 }
 
+void Command::option(const std::string& names, std::vector<std::string>& values,
+                     const std::string& help, bool required) {
+  impl_->app->add_option(names, values, help)
+      ->required(required)
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->type_name("TEXT");
+}
+
 void Command::flag(const std::string& names, bool& value, const std::string& help) {
   impl_->app->add_flag(names, value, help);
 }

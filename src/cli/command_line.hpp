@@ -40,6 +40,9 @@ class Command {
   void option(const std::string& names, std::filesystem::path& value, const std::string& help,
               bool required);
   void option(const std::string& names, std::string& value, const std::string& help, bool required);
+  /// A text option that may be given several times, or once with commas.
+  void option(const std::string& names, std::vector<std::string>& values, const std::string& help,
+              bool required);
   void flag(const std::string& names, bool& value, const std::string& help);
 
   /// Every option of a struct with describe(), under "--name".

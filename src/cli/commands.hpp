@@ -13,6 +13,7 @@ void add_inspect(Program& program);
 void add_judge(Program& program);
 void add_measure(Program& program);
 void add_plan(Program& program);
+void add_predict(Program& program);
 void add_report(Program& program);
 void add_twin(Program& program);
 

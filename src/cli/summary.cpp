@@ -18,15 +18,6 @@ using nlohmann::json;
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-/// "12287 ± 21 Pa" with an expanded uncertainty of two digits, or a dash.
-std::string drop_text(double value, double standard_uncertainty) {
-  if (!std::isfinite(value)) return "-";
-  if (!(standard_uncertainty > 0.0)) return fmt::format("{:.0f}", value);
-  const double expanded = kExpansion * standard_uncertainty;
-  const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(expanded))));
-  return fmt::format("{:.{}f} ± {:.{}f}", value, digits, expanded, digits);
-}
-
 /// Whether QR and dp_e agree, in the words of the report.
 std::string verdict(double en_number) {
   if (!std::isfinite(en_number)) return "none";
@@ -46,7 +37,7 @@ std::string pressure_table(const results::Measurement& m, Index first, Index las
     (m.x - x).abs().minCoeff(&nearest);
     std::vector<std::string> row{fmt::format("{:.2f}", m.x[nearest] * 1e3)};
     for (Index r = first; r < last; ++r) {
-      row.push_back(drop_text(m.pressure(r, nearest), m.pressure_uncertainty(r, nearest)));
+      row.push_back(value_text(m.pressure(r, nearest), m.pressure_uncertainty(r, nearest)));
     }
     rows.push_back(std::move(row));
   }
@@ -86,8 +77,8 @@ std::string summary_text(const results::Measurement& m) {
          fmt::format("{:.0f}", m.reynolds[r]),
          std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
                               : std::string("none"),
-         drop_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
-         drop_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
+         value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
+         value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
          std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-"),
          verdict(m.en_number[r])});
   }

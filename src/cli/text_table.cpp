@@ -1,6 +1,11 @@
 #include "text_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+
+#include "manoscope/core/uncertainty.hpp"
 
 namespace manoscope::cli {
 namespace {
@@ -32,6 +37,14 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
     text += '\n';
   }
   return text;
+}
+
+std::string value_text(double value, double standard_uncertainty) {
+  if (!std::isfinite(value)) return "-";
+  if (!(standard_uncertainty > 0.0)) return fmt::format("{:.0f}", value);
+  const double expanded = kExpansion * standard_uncertainty;
+  const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(expanded))));
+  return fmt::format("{:.{}f} ± {:.{}f}", value, digits, expanded, digits);
 }
 
 }  // namespace manoscope::cli

@@ -12,6 +12,7 @@
 #include "manoscope/core/random.hpp"
 #include "manoscope/results/schema.hpp"
 #include "tests/support/example_checks.hpp"
+#include "tests/support/example_flow.hpp"
 
 namespace manoscope::test_support {
 namespace {
@@ -357,6 +358,7 @@ Measurement example_measurement(const ExampleSize& size) {
   add_crossings(m, size.crossings);
   add_maps(m, size);
   add_response(m);
+  add_example_flow(m);
   add_example_checks(m, size.seed);
   return m;
 }

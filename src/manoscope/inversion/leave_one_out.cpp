@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "manoscope/inversion/read_pressure.hpp"
-#include "manoscope/inversion/thin_profile.hpp"
+#include "manoscope/inversion/thinned.hpp"
 
 namespace manoscope::inversion {
 namespace {

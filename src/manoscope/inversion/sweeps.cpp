@@ -6,7 +6,7 @@
 #include <string>
 
 #include "manoscope/inversion/read_pressure.hpp"
-#include "manoscope/inversion/thin_profile.hpp"
+#include "manoscope/inversion/thinned.hpp"
 
 namespace manoscope::inversion {
 namespace {

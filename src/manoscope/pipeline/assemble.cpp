@@ -124,8 +124,8 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
   const Index n_x = m.x.size();
   for (Array1* scalar :
        {&m.flow_rate, &m.extracted_drop, &m.extracted_drop_uncertainty, &m.resistance_drop,
-        &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.transducer_drop,
-        &m.parasitic_drop, &m.en_number, &m.half_response_wavelength, &m.pressure_band_factor}) {
+        &m.resistance_drop_uncertainty, &m.channel_resistance_drop, &m.reynolds, &m.en_number,
+        &m.half_response_wavelength, &m.pressure_band_factor}) {
     *scalar = Array1::Constant(n, kNan);
   }
   for (Array2* field : {&m.deflection, &m.deflection_uncertainty, &m.pressure,
@@ -165,8 +165,6 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
     m.resistance_pressure.row(r) = found.resistance_pressure;
     m.channel_resistance_drop[r] = found.channel_resistance_drop;
     m.reynolds[r] = found.reynolds;
-    if (run.transducer_drop) m.transducer_drop[r] = run.transducer_drop->si();
-    if (found.parasitic_drop) m.parasitic_drop[r] = found.parasitic_drop->si();
     if (found.section) {
       m.test_section(r, 0) = reading.x[found.section->first];
       m.test_section(r, 1) = reading.x[found.section->last];

@@ -11,6 +11,7 @@
 #include "manoscope/inversion/read_pressure.hpp"
 #include "manoscope/inversion/test_section.hpp"
 #include "manoscope/inversion/tube_law.hpp"
+#include "manoscope/pipeline/compare_flow.hpp"
 #include "manoscope/pipeline/stages.hpp"
 #include "manoscope/results/measurement.hpp"
 #include "manoscope/validation/drop_agreement.hpp"
@@ -35,7 +36,7 @@ struct RunFindings {
   double reynolds = kMissing;
   inversion::TubeLawUnderFlow tube_law;
   std::string no_comparison;  ///< why the flow could not be compared; empty if it was
-  std::optional<Pressure> parasitic_drop;
+  FlowFindings flow;
 };
 
 /// Copies findings into the flat arrays of the result file; stations without answer become NaN.
@@ -45,6 +46,11 @@ void store_calibration(const calibration::ConstitutiveCurves& curves,
                        results::Measurement& measurement);
 void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
                 results::Measurement& measurement);
+/// Models at x between their stations are straight; NaN where there is no number.
+/// @param knowledge  none if flow models were not run.
+void store_flow(const std::optional<FlowKnowledge>& knowledge, const std::vector<FlowRun>& runs,
+                const std::vector<RunFindings>& findings, const CompareFlowOptions& options,
+                results::FlowChecks& checks);
 void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& measurement);
 
 /// A level whose map disagrees with the curves through the other levels.

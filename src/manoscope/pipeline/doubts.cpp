@@ -329,14 +329,11 @@ double acceleration(const experiment::Experiment& experiment, const FlowRun& run
                     const RunFindings& found) {
   const Array1& zeta = run.profile.zeta;
   if (!found.section || found.section->last >= zeta.size()) return 0.0;
-  const flow::Channel channel{experiment.channel.length, experiment.channel.width,
-                              experiment.channel.height};
+  const flow::Channel channel = channel_of(experiment);
   const Length start = Length::from_si(zeta[found.section->first]);
   const Length end = Length::from_si(zeta[found.section->last]);
   if (!(channel.height + std::min(start, end) > Length{})) return 0.0;
-  return flow::acceleration_drop(channel, {experiment.fluid.viscosity, experiment.fluid.density},
-                                 run.flow_rate, start, end)
-      .si();
+  return flow::acceleration_drop(channel, fluid_of(experiment), run.flow_rate, start, end).si();
 }
 
 void doubt_agreement(const experiment::Experiment& experiment, const FlowRun& run,

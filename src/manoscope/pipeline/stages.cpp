@@ -192,6 +192,24 @@ std::vector<calibration::Level> make_levels(const Experiment& experiment,
   return levels;
 }
 
+namespace {
+
+std::optional<Pressure> mean(const std::vector<Pressure>& values) {
+  if (values.empty()) return std::nullopt;
+  Pressure sum{};
+  for (const Pressure value : values) sum += value;
+  return (1.0 / static_cast<double>(values.size())) * sum;
+}
+
+/// Standard uncertainty of the mean of independent readings.
+Pressure uncertainty_of_mean(const std::vector<Pressure>& uncertainties) {
+  double variance = 0.0;
+  for (const Pressure one : uncertainties) variance += one.si() * one.si();
+  return Pressure::from_si(std::sqrt(variance) / static_cast<double>(uncertainties.size()));
+}
+
+}  // namespace
+
 std::vector<FlowRun> make_runs(const Experiment& experiment,
                                const std::vector<maps::ReducedMap>& reduced) {
   std::vector<std::string> order;
@@ -206,18 +224,23 @@ std::vector<FlowRun> make_runs(const Experiment& experiment,
     FlowRun run;
     run.name = name;
     std::vector<Profile> profiles;
-    double transducer = 0.0;
-    int n_transducer = 0;
+    std::vector<Pressure> drops, uncertainties, outlets;
     for (const std::size_t i : members.at(name)) {
       run.flow_rate = experiment.flow[i].flow_rate;
       profiles.push_back(reduced[i].profile);
-      if (const auto& drop = experiment.flow[i].pressure_drop) {
-        transducer += drop->si();
-        ++n_transducer;
+      const experiment::FlowMap& map = experiment.flow[i];
+      if (map.pressure_drop) drops.push_back(*map.pressure_drop);
+      if (map.pressure_drop && map.pressure_drop_uncertainty) {
+        uncertainties.push_back(*map.pressure_drop_uncertainty);
       }
+      if (map.outlet_pressure) outlets.push_back(*map.outlet_pressure);
     }
     run.profile = mean_profile(profiles);
-    if (n_transducer > 0) run.transducer_drop = Pressure::from_si(transducer / n_transducer);
+    run.transducer_drop = mean(drops);
+    run.outlet_pressure = mean(outlets);
+    if (!drops.empty() && uncertainties.size() == drops.size()) {
+      run.transducer_uncertainty = uncertainty_of_mean(uncertainties);
+    }
     runs.push_back(std::move(run));
   }
   return runs;

@@ -51,7 +51,9 @@ struct FlowRun {
   std::string name;
   FlowRate flow_rate{};
   Profile profile;
-  std::optional<Pressure> transducer_drop;  ///< mean over the maps that have one
+  std::optional<Pressure> transducer_drop;         ///< mean over the maps that have one
+  std::optional<Pressure> transducer_uncertainty;  ///< standard, of that mean; none if not told
+  std::optional<Pressure> outlet_pressure;         ///< mean over the maps that have one
 };
 
 /// Runs in the order of their first map.

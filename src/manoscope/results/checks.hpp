@@ -1,14 +1,12 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
+#include "manoscope/results/no_number.hpp"
 
 namespace manoscope::results {
-
-inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 /// What a measurement tells of its own trustworthiness without knowing the truth. Part of
 /// Measurement: plain SI arrays whose names are those of the file.

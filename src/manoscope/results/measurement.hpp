@@ -1,11 +1,11 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/results/checks.hpp"
+#include "manoscope/results/flow_checks.hpp"
 
 namespace manoscope::results {
 
@@ -16,7 +16,7 @@ namespace manoscope::results {
 /// run (n_r) flow runs in the order of the experiment; map (n_m) every map that was read;
 /// crossing (n_c) crossing points of all runs.
 /// A number that does not exist (no transducer, no answer of the wall) is NaN.
-struct Measurement : Checks {
+struct Measurement : Checks, FlowChecks {
   // Global attributes.
   std::string title, source, history;
   std::string experiment;             ///< the whole experiment.toml
@@ -68,15 +68,6 @@ struct Measurement : Checks {
   Array1 crossing_x_uncertainty;  ///< (n_c) m
   Array1 crossing_pressure;       ///< (n_c) Pa
 
-  // Does the flow agree.
-  Array1 extracted_drop, extracted_drop_uncertainty;    ///< (n_r) Pa
-  Array1 resistance_drop, resistance_drop_uncertainty;  ///< (n_r) Pa, over the test section
-  Array1 channel_resistance_drop;                       ///< (n_r) Pa, Q R over the whole channel
-  Array2 resistance_pressure;              ///< (n_r, n_x) Pa: p(x_end) + Q int_x^x_end r
-  Array1 reynolds;                         ///< (n_r)
-  Array1 transducer_drop, parasitic_drop;  ///< (n_r) Pa
-  Array1 en_number;                        ///< (n_r) |dp_e - QR| / U of the difference
-
   // The tube law p = f(zeta) + b zeta'', a = f'. NaN: not determined.
   Array2 stiffness, stiffness_uncertainty;    ///< (n_l, n_x) Pa m-1, dp/dzeta at uniform p
   Array1 tube_law_deflection;                 ///< (n_r) m, where a and b belong
@@ -88,8 +79,8 @@ struct Measurement : Checks {
   Array1 tube_law_at_rest_a;                  ///< (n_l) Pa m-1
   Array1 tube_law_at_rest_b, tube_law_at_rest_b_uncertainty;  ///< (n_l) N m-1, standard
   Array1 tube_law_at_rest_misfit;                             ///< (n_l) N m-1
-  double tube_law_at_rest_b_small = std::numeric_limits<double>::quiet_NaN();  ///< N m-1
-  double tube_law_at_rest_b_small_uncertainty = std::numeric_limits<double>::quiet_NaN();
+  double tube_law_at_rest_b_small = kNoNumber;                ///< N m-1
+  double tube_law_at_rest_b_small_uncertainty = kNoNumber;
 
   // What each map was like.
   std::vector<std::string> map;             ///< (n_m) file names

@@ -1,4 +1,4 @@
-#include "manoscope/results/schema_checks.hpp"
+#include "manoscope/results/schema_parts.hpp"
 
 namespace manoscope::results {
 namespace {

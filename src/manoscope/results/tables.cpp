@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "manoscope/core/flags.hpp"
 
@@ -24,6 +28,13 @@ std::string cell(std::string_view text) {
     quoted += letter;
   }
   return quoted + '"';
+}
+
+/// "true section" as a column is called: true_section.
+std::string as_column(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char letter) { return letter == ' ' || letter == '-'; }, '_');
+  return name;
 }
 
 void add_numbers(std::string& table, std::initializer_list<double> values) {
@@ -69,19 +80,60 @@ std::string pressure_table(const Measurement& m) {
 }
 
 std::string drops_table(const Measurement& m) {
-  std::string table =
-      "run,flow_rate_m3_s,reynolds,x_start_m,x_end_m,extracted_drop_Pa,"
-      "extracted_drop_uncertainty_Pa,resistance_drop_Pa,resistance_drop_uncertainty_Pa,"
-      "transducer_drop_Pa,parasitic_drop_Pa,en_number\n";
+  struct Column {
+    std::string name;
+    std::function<double(Index)> value;
+  };
+  std::vector<Column> columns;
+  const auto add = [&columns](std::string name, const Array1& values) {
+    columns.push_back({std::move(name), [&values](Index run) { return values(run); }});
+  };
+  const auto add_row = [&columns](std::string name, const Array2& values, std::size_t row) {
+    columns.push_back({std::move(name),
+                       [&values, row](Index run) { return values(static_cast<Index>(row), run); }});
+  };
+  add("flow_rate_m3_s", m.flow_rate);
+  add("reynolds", m.reynolds);
+  columns.push_back({"x_start_m", [&m](Index run) { return m.test_section(run, 0); }});
+  columns.push_back({"x_end_m", [&m](Index run) { return m.test_section(run, 1); }});
+  add("extracted_drop_Pa", m.extracted_drop);
+  add("extracted_drop_uncertainty_Pa", m.extracted_drop_uncertainty);
+  add("resistance_drop_Pa", m.resistance_drop);
+  add("resistance_drop_uncertainty_Pa", m.resistance_drop_uncertainty);
+  add("transducer_drop_Pa", m.transducer_drop);
+  add("parasitic_drop_Pa", m.parasitic_drop);
+  add("en_number", m.en_number);
+  add("reduced_reynolds", m.reduced_reynolds);
+  add("parasitic_drop_uncertainty_Pa", m.parasitic_drop_uncertainty);
+  add("compliant_drop_Pa", m.compliant_drop);
+  add("compliant_drop_uncertainty_Pa", m.compliant_drop_uncertainty);
+  add("predicted_drop_Pa", m.predicted_drop);
+  add("predicted_drop_uncertainty_Pa", m.predicted_drop_uncertainty);
+  add("predicted_en_number", m.predicted_en_number);
+  add("inferred_flow_rate_m3_s", m.inferred_flow_rate);
+  add("inferred_flow_rate_uncertainty_m3_s", m.inferred_flow_rate_uncertainty);
+  add("friction_drag_N", m.friction_drag);
+  add("relative_friction_drag", m.relative_friction_drag);
+  for (std::size_t k = 0; k < m.correction.size(); ++k) {
+    add_row(as_column(m.correction[k]) + "_Pa", m.correction_drop, k);
+    add_row(as_column(m.correction[k]) + "_uncertainty_Pa", m.correction_uncertainty, k);
+  }
+  for (std::size_t f = 0; f < m.flow_model.size(); ++f) {
+    const std::string model = as_column(m.flow_model[f]) + "_model_";
+    add_row(model + "drop_Pa", m.model_drop, f);
+    add_row(model + "drop_uncertainty_Pa", m.model_drop_uncertainty, f);
+    add_row(model + "en_number", m.model_en_number, f);
+    add_row(model + "p_value", m.model_p_value, f);
+  }
+  std::string table = "run";
+  for (const Column& column : columns) table += ',' + column.name;
+  table += ",verdict\n";
   for (std::size_t run = 0; run < m.run.size(); ++run) {
-    const auto ir = static_cast<Index>(run);
     table += cell(m.run[run]);
-    add_numbers(table,
-                {m.flow_rate(ir), m.reynolds(ir), m.test_section(ir, 0), m.test_section(ir, 1),
-                 m.extracted_drop(ir), m.extracted_drop_uncertainty(ir), m.resistance_drop(ir),
-                 m.resistance_drop_uncertainty(ir), m.transducer_drop(ir), m.parasitic_drop(ir),
-                 m.en_number(ir)});
-    table += '\n';
+    for (const Column& column : columns) {
+      table += ',' + cell(column.value(static_cast<Index>(run)));
+    }
+    table += ',' + (run < m.verdict.size() ? cell(m.verdict[run]) : std::string()) + '\n';
   }
   return table;
 }

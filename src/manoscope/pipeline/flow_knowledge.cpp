@@ -1,0 +1,217 @@
+#include "manoscope/pipeline/flow_knowledge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/flow/entry_flow.hpp"
+#include "manoscope/inversion/thinned.hpp"
+#include "manoscope/validation/wall_answer.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+using experiment::Experiment;
+
+constexpr int kShapeTerms = 3;  // a plate strip has two, a membrane one
+
+flow::PressureTerm named(const char* passage, flow::PressureTerm term) {
+  term.name = fmt::format("{}, {}", passage, term.name);
+  return term;
+}
+
+flow::RigidPassage sizes(const experiment::Passage& passage) {
+  return {passage.length, passage.width, passage.height};
+}
+
+std::vector<flow::PressureTerm> passage_parts(const Experiment& experiment, const char* name,
+                                              const experiment::Passage& passage,
+                                              FlowRate flow_rate) {
+  const flow::Fluid fluid = fluid_of(experiment);
+  std::vector<flow::PressureTerm> parts;
+  if (flow_rate > FlowRate{}) {
+    parts = flow::passage_terms(fluid, flow_rate, sizes(passage), passage.fittings);
+  } else {
+    // Backwards or at rest the fittings have no formula; the duct has.
+    parts.push_back({"duct", "exact series",
+                     flow::passage_drop(fluid.viscosity, flow_rate, sizes(passage)), Pressure{}});
+  }
+  for (flow::PressureTerm& part : parts) part = named(name, part);
+  return parts;
+}
+
+/// The reading at the end of the channel, and how well it is known there.
+validation::Outlet continued(const inversion::PressureReading& reading, Length length,
+                             Length width) {
+  Index last = reading.x.size() - 1;
+  while (last >= 0 && !reading.answered(last)) --last;
+  if (last < 0) return {};
+  Index before = last;
+  while (before > 0 && reading.x[last] - reading.x[before] < 0.5 * width.si()) --before;
+  while (before < last && !reading.answered(before)) ++before;
+  const double own = reading.uncertainty.standard()[last];
+  if (before == last) return {Pressure::from_si(reading.pressure[last]), Pressure::from_si(own)};
+  const double slope =
+      (reading.pressure[last] - reading.pressure[before]) / (reading.x[last] - reading.x[before]);
+  const double fall = slope * std::max(0.0, length.si() - reading.x[last]);
+  // Half of what is added is doubted: behind the last answer p may bend.
+  return {Pressure::from_si(reading.pressure[last] + fall),
+          Pressure::from_si(std::hypot(own, 0.5 * fall))};
+}
+
+std::string inlet_words(const Experiment& experiment) {
+  const experiment::InletSection& inlet = experiment.inlet;
+  const char* profile =
+      inlet.profile.value_or(flow::InletProfile::developed) == flow::InletProfile::developed
+          ? "developed"
+          : "uniform";
+  if (inlet.spread) {
+    return fmt::format("{} where it enters, known to {:.0f} % of the way to the other profile",
+                       profile, 100.0 * *inlet.spread);
+  }
+  if (inlet.profile) return fmt::format("{} where it enters, as inlet.profile says", profile);
+  if (experiment.rigid.inlet) {
+    return "developed where it enters, as far as rigid.inlet lets a uniform profile develop";
+  }
+  return "developed where it enters, or anything up to uniform: tell inlet.profile to narrow that";
+}
+
+}  // namespace
+
+flow::Channel channel_of(const Experiment& experiment) {
+  return {experiment.channel.length, experiment.channel.width, experiment.channel.height};
+}
+
+flow::Fluid fluid_of(const Experiment& experiment) {
+  return {experiment.fluid.viscosity, experiment.fluid.density};
+}
+
+inversion::GaugeErrors gauge_of(const Experiment& experiment) {
+  return {experiment.instrument.pressure_gain_uncertainty.value_or(0.0),
+          experiment.instrument.pressure_zero_uncertainty.value_or(Pressure{})};
+}
+
+validation::FlowUncertainty flow_uncertainty_of(const Experiment& experiment) {
+  return {experiment.channel.height_uncertainty.value_or(Length{}),
+          experiment.fluid.viscosity_uncertainty.value_or(Viscosity{}),
+          experiment.instrument.flow_rate_uncertainty.value_or(0.0)};
+}
+
+std::optional<flow::WallShape> shape_across(const maps::ResponsePicture& response,
+                                            const flow::Channel& channel) {
+  const double quarter = 0.25 * channel.length.si(), half_width = 0.5 * channel.width.si();
+  std::vector<double> s, zeta;
+  for (Index iz = 0; iz < response.z.size(); ++iz) {
+    const double at = response.z[iz] / half_width;
+    if (std::abs(at) > 1.0) continue;
+    double sum = 0.0, count = 0.0;
+    for (Index ix = 0; ix < response.x.size(); ++ix) {
+      if (response.x[ix] < quarter || response.x[ix] > 3.0 * quarter) continue;
+      if (std::isnan(response.height(iz, ix))) continue;
+      sum += response.height(iz, ix);
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    s.push_back(at);
+    zeta.push_back(sum / count);
+  }
+  const auto n = static_cast<Index>(s.size());
+  if (n < 2 * kShapeTerms) return std::nullopt;
+  const Eigen::Map<const Array1> deflection(zeta.data(), n);
+  const double mean = deflection.mean();
+  // A wall that answers with its mean has the same sign nearly everywhere.
+  if (std::abs(mean) < 0.2 * deflection.abs().maxCoeff()) return std::nullopt;
+  try {
+    return flow::WallShape::fit(Eigen::Map<const Array1>(s.data(), n), deflection, kShapeTerms);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& reduced,
+                        const calibration::ConstitutiveCurves& curves,
+                        const std::vector<FlowRun>& runs, Index n_stations) {
+  FlowKnowledge known;
+  known.setup.channel = channel_of(experiment);
+  known.setup.fluid = fluid_of(experiment);
+  known.setup.uncertainty = flow_uncertainty_of(experiment);
+  known.setup.inlet = experiment.inlet.profile.value_or(flow::InletProfile::developed);
+  known.setup.developing_length = experiment.inlet.developing_length;
+  const auto shape = shape_across(reduced.response, known.setup.channel);
+  known.setup.shape = shape.value_or(flow::WallShape::parabola());
+  known.words = fmt::format(
+      "section of the wall between lowest and highest level: crest {:.3g} times the mean{}; flow "
+      "{}",
+      known.setup.shape.crest(), shape ? "" : " (a parabola, since the maps do not show it)",
+      inlet_words(experiment));
+
+  known.stations =
+      inversion::some_stations(curves.x, {Length{}, experiment.channel.length}, n_stations);
+  known.curves = inversion::thinned(curves, known.stations);
+  const validation::CurvedWall wall(known.curves, experiment.channel.length,
+                                    validation::PredictFlowOptions{}.largest_extrapolation);
+  double least = wall.least(), greatest = wall.greatest();
+  for (const FlowRun& run : runs) {
+    for (Index ix = 0; ix < run.profile.x.size(); ++ix) {
+      if (run.profile.flags[ix] != 0) continue;
+      least = std::min(least, run.profile.zeta[ix]);
+      greatest = std::max(greatest, run.profile.zeta[ix]);
+    }
+  }
+  known.setup =
+      validation::with_tables(known.setup, Length::from_si(least), Length::from_si(greatest));
+  return known;
+}
+
+double inlet_spread(const Experiment& experiment, FlowRate flow_rate) {
+  if (experiment.inlet.spread) return *experiment.inlet.spread;
+  if (experiment.inlet.profile) return 0.0;
+  if (!experiment.rigid.inlet || !(flow_rate > FlowRate{})) return 1.0;
+  const experiment::Passage& passage = *experiment.rigid.inlet;
+  const double w = passage.width.si(), h = passage.height.si();
+  const double diameter = 2.0 * w * h / (w + h);
+  const double reynolds =
+      flow_rate.si() / (w * h) * diameter / fluid_of(experiment).kinematic_viscosity().si();
+  const flow::EntryConstants constants = flow::entry_constants(h / w);
+  const double developed =
+      flow::entry_excess(constants, passage.length.si() / (diameter * reynolds)) /
+      constants.incremental_drop;
+  return std::clamp(1.0 - developed, 0.0, 1.0);
+}
+
+std::vector<flow::PressureTerm> passages(const Experiment& experiment, FlowRate flow_rate) {
+  const experiment::RigidSection& rigid = experiment.rigid;
+  if (!rigid.simulated.empty()) return {flow::simulated_drop(rigid.simulated, flow_rate)};
+  std::vector<flow::PressureTerm> parts;
+  const auto add = [&](const char* name, const std::optional<experiment::Passage>& passage) {
+    if (!passage) return;
+    for (auto& part : passage_parts(experiment, name, *passage, flow_rate)) {
+      parts.push_back(std::move(part));
+    }
+  };
+  add("inlet", rigid.inlet);
+  add("outlet", rigid.outlet);
+  return parts;
+}
+
+validation::Outlet outlet_of(const Experiment& experiment, FlowRate flow_rate,
+                             std::optional<Pressure> gauge,
+                             const inversion::PressureReading* reading) {
+  if (!gauge && !experiment.rigid.outlet) {
+    if (reading == nullptr) return {};
+    return continued(*reading, experiment.channel.length, experiment.channel.width);
+  }
+  validation::Outlet outlet{gauge.value_or(Pressure{}), {}};
+  if (!experiment.rigid.outlet) return outlet;
+  const Estimate behind = flow::parasitic_estimate(
+      passage_parts(experiment, "outlet", *experiment.rigid.outlet, flow_rate),
+      flow_uncertainty_of(experiment).viscosity / experiment.fluid.viscosity);
+  outlet.pressure += Pressure::from_si(behind.value);
+  outlet.uncertainty = Pressure::from_si(behind.standard_uncertainty());
+  return outlet;
+}
+
+}  // namespace manoscope::pipeline

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manoscope/calibration/constitutive_curves.hpp"
+#include "manoscope/experiment/experiment.hpp"
+#include "manoscope/flow/passage_losses.hpp"
+#include "manoscope/inversion/read_pressure.hpp"
+#include "manoscope/pipeline/stages.hpp"
+#include "manoscope/validation/flow_setup.hpp"
+#include "manoscope/validation/predict_flow.hpp"
+
+namespace manoscope::pipeline {
+
+// What an experiment tells of its channel, gauge and fluid, as the layers below take it.
+flow::Channel channel_of(const experiment::Experiment& experiment);
+flow::Fluid fluid_of(const experiment::Experiment& experiment);
+inversion::GaugeErrors gauge_of(const experiment::Experiment& experiment);
+validation::FlowUncertainty flow_uncertainty_of(const experiment::Experiment& experiment);
+
+/// The channel as the flow models see it, and where that comes from.
+struct FlowKnowledge {
+  validation::FlowSetup setup;  ///< with tables; the inlet's spread is that of no run yet
+  std::string words;            ///< section and inlet
+  std::vector<Index> stations;  ///< of the curves, at which models are run
+  calibration::ConstitutiveCurves curves;  ///< at these stations
+};
+
+/// Section shape from the picture of the wall's response, inlet and uncertainties from the
+/// experiment, tables of sections for every deflection that the curves and the runs hold.
+/// @param n_stations  about how many there shall be along the channel.
+/// @throws InputError if the gap closes or reaches the width somewhere.
+FlowKnowledge know_flow(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
+                        const calibration::ConstitutiveCurves& curves,
+                        const std::vector<FlowRun>& runs, Index n_stations);
+
+/// Shape of the wall across the channel: even polynomial through the mean of the middle half of
+/// the picture. None where the picture is too coarse or does not show a wall that gives way.
+std::optional<flow::WallShape> shape_across(const maps::ResponsePicture& response,
+                                            const flow::Channel& channel);
+
+/// How far the profile at the channel's inlet may lie from the one that is taken, 0 to 1: as the
+/// experiment says; else what a rigid inlet passage leaves of a uniform profile's development,
+/// 1 - K(x+)/K(infinity) with K of Shah (1978); else 1.
+double inlet_spread(const experiment::Experiment& experiment, FlowRate flow_rate);
+
+/// Parts of the drop in the rigid passages, "inlet, duct" and so on, or what simulations of them
+/// say; empty if the experiment tells of no passage.
+/// @throws InputError as flow::passage_terms() and flow::simulated_drop().
+std::vector<flow::PressureTerm> passages(const experiment::Experiment& experiment,
+                                         FlowRate flow_rate);
+
+/// Gauge pressure at the channel's outlet: what the flow list says of the gauge behind it (0 if it
+/// says nothing) plus the drop of the outlet passage; where neither is told, the reading continued
+/// straight to x = length.
+/// @param reading  of the run, or nullptr: then 0 stands in for it.
+validation::Outlet outlet_of(const experiment::Experiment& experiment, FlowRate flow_rate,
+                             std::optional<Pressure> gauge,
+                             const inversion::PressureReading* reading);
+
+}  // namespace manoscope::pipeline

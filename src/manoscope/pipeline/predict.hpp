@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "manoscope/core/monitor.hpp"
+#include "manoscope/experiment/experiment.hpp"
+#include "manoscope/pipeline/measure_options.hpp"
+#include "manoscope/validation/predict_flow.hpp"
+
+namespace manoscope::pipeline {
+
+struct PredictOptions {
+  std::string model = "section-march";
+  std::optional<Pressure> outlet_pressure;
+  std::optional<Pressure> outlet_uncertainty;
+  validation::PredictFlowOptions coupling;
+
+  template <class Visitor>
+  void describe(Visitor&& visit) {
+    visit(
+        "model", model,
+        "flow model: paper, creeping, momentum, energy, developing, plane-march or section-march");
+    visit("outlet-pressure", outlet_pressure,
+          "gauge pressure where the channel ends; auto: outlet passage, else as the runs have it");
+    visit("outlet-uncertainty", outlet_uncertainty, "its standard uncertainty; auto: as found");
+    coupling.describe(visit);
+  }
+  /// @throws InputError naming the first option out of range.
+  void validate() const;
+};
+
+/// Pressure, deflection and drop at flow rates that were not run.
+struct Predictions {
+  std::vector<validation::FlowPrediction> flows;  ///< in the order asked
+  std::string outlet;                             ///< where the outlet pressure comes from
+  std::string setup;                              ///< section and inlet, in words
+};
+
+/// Predicts flow rates from the calibration of an experiment; its flow runs serve to place the
+/// channel and, where neither outlet pressure nor outlet passage is told, for the pressure at the
+/// outlet: a straight line in Q through what was read there, with the scatter about it.
+///
+/// @throws InputError as calibrate(), know_flow() and validation::predict_flow(); for no flow rate,
+///         or one that is not positive.
+Predictions predict(const experiment::Experiment& experiment,
+                    const std::vector<FlowRate>& flow_rates, const PredictOptions& options,
+                    const MeasureOptions& measure = {}, int n_threads = 0,
+                    const Monitor& monitor = {});
+
+}  // namespace manoscope::pipeline

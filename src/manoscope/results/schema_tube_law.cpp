@@ -1,0 +1,92 @@
+#include "manoscope/results/schema_parts.hpp"
+
+namespace manoscope::results {
+namespace {
+
+using M = Measurement;
+
+}  // namespace
+
+std::vector<Variable> tube_law_variables() {
+  return {
+      {"stiffness",
+       {"level", "x"},
+       "Pa m-1",
+       "dp/dzeta of the wall at uniform pressure: a(x) of the tube law, the wall's ends included",
+       &M::stiffness,
+       "stiffness_uncertainty"},
+      {"stiffness_uncertainty",
+       {"level", "x"},
+       "Pa m-1",
+       "standard uncertainty of the stiffness, k = 1, by the errors of the level and its "
+       "neighbours",
+       &M::stiffness_uncertainty},
+      {"tube_law_deflection",
+       {"run"},
+       "m",
+       "deflection, freed from the wall's ends, to which a and b of the tube law belong",
+       &M::tube_law_deflection},
+      {"tube_law_a", {"run"}, "Pa m-1", "a of the tube law, dp/dzeta there", &M::tube_law_a},
+      {"tube_law_b",
+       {"run"},
+       "N m-1",
+       "b of the tube law p = f(zeta) + b zeta'' under flow; negative under tension",
+       &M::tube_law_b,
+       "tube_law_b_uncertainty tube_law_misfit"},
+      {"tube_law_b_uncertainty",
+       {"run"},
+       "N m-1",
+       "standard uncertainty of b, k = 1, the law's misfit included",
+       &M::tube_law_b_uncertainty},
+      {"tube_law_misfit",
+       {"run"},
+       "N m-1",
+       "by how much b differs from place to place; 0 where errors may explain it",
+       &M::tube_law_misfit},
+      {"healing_length",
+       {"run"},
+       "m",
+       "sqrt(-b/a): length over which the wall forgets a disturbance; missing where b is not "
+       "negative",
+       &M::healing_length},
+      {"tube_law_at_rest_deflection",
+       {"level"},
+       "m",
+       "deflection at uniform pressure, freed from the wall's ends",
+       &M::tube_law_at_rest_deflection},
+      {"tube_law_at_rest_a",
+       {"level"},
+       "Pa m-1",
+       "a of the tube law, dp/dzeta there",
+       &M::tube_law_at_rest_a},
+      {"tube_law_at_rest_b",
+       {"level"},
+       "N m-1",
+       "b of the tube law from the ends of the wall at uniform pressure",
+       &M::tube_law_at_rest_b,
+       "tube_law_at_rest_b_uncertainty tube_law_at_rest_misfit"},
+      {"tube_law_at_rest_b_uncertainty",
+       {"level"},
+       "N m-1",
+       "standard uncertainty of that b, k = 1, the law's misfit included",
+       &M::tube_law_at_rest_b_uncertainty},
+      {"tube_law_at_rest_misfit",
+       {"level"},
+       "N m-1",
+       "by how much that b differs from place to place; 0 where errors may explain it",
+       &M::tube_law_at_rest_misfit},
+      {"tube_law_at_rest_b_small",
+       {},
+       "N m-1",
+       "limit of that b for small deflections, from all levels",
+       &M::tube_law_at_rest_b_small,
+       "tube_law_at_rest_b_small_uncertainty"},
+      {"tube_law_at_rest_b_small_uncertainty",
+       {},
+       "N m-1",
+       "standard uncertainty of the limit, k = 1",
+       &M::tube_law_at_rest_b_small_uncertainty},
+  };
+}
+
+}  // namespace manoscope::results
