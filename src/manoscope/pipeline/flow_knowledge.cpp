@@ -64,19 +64,20 @@ validation::Outlet continued(const inversion::PressureReading& reading, Length l
 
 std::string inlet_words(const Experiment& experiment) {
   const experiment::InletSection& inlet = experiment.inlet;
-  const char* profile =
-      inlet.profile.value_or(flow::InletProfile::developed) == flow::InletProfile::developed
-          ? "developed"
-          : "uniform";
+  const char* const profile =
+      inlet.profile == flow::InletProfile::developed ? "developed" : "uniform";
   if (inlet.spread) {
     return fmt::format("{} where it enters, known to {:.0f} % of the way to the other profile",
                        profile, 100.0 * *inlet.spread);
   }
-  if (inlet.profile) return fmt::format("{} where it enters, as inlet.profile says", profile);
   if (experiment.rigid.inlet) {
-    return "developed where it enters, as far as rigid.inlet lets a uniform profile develop";
+    return fmt::format(
+        "{} where it enters, known as far as rigid.inlet lets a uniform profile develop", profile);
   }
-  return "developed where it enters, or anything up to uniform: tell inlet.profile to narrow that";
+  return fmt::format(
+      "{} where it enters, known to 100 % of the way to the other profile: tell inlet.spread to "
+      "narrow that",
+      profile);
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& r
   known.setup.channel = channel_of(experiment);
   known.setup.fluid = fluid_of(experiment);
   known.setup.uncertainty = flow_uncertainty_of(experiment);
-  known.setup.inlet = experiment.inlet.profile.value_or(flow::InletProfile::developed);
+  known.setup.inlet = experiment.inlet.profile;
   known.setup.developing_length = experiment.inlet.developing_length;
   const auto shape = shape_across(reduced.response, known.setup.channel);
   known.setup.shape = shape.value_or(flow::WallShape::parabola());
@@ -168,7 +169,6 @@ FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& r
 
 double inlet_spread(const Experiment& experiment, FlowRate flow_rate) {
   if (experiment.inlet.spread) return *experiment.inlet.spread;
-  if (experiment.inlet.profile) return 0.0;
   if (!experiment.rigid.inlet || !(flow_rate > FlowRate{})) return 1.0;
   const experiment::Passage& passage = *experiment.rigid.inlet;
   const double w = passage.width.si(), h = passage.height.si();
