@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/experiment/draft_text.hpp"
@@ -139,6 +140,40 @@ TEST(Draft, IsAnExperimentOnceItsGapsAreFilled) {
   EXPECT_EQ(experiment.hydrostatic[0].pressure_uncertainty, 8.0 * Pa);
   EXPECT_FALSE(experiment.hydrostatic[0].vented);  // only the user can know
   EXPECT_EQ(experiment.name, folder.path().filename());
+}
+
+/// The draft with every optional key taken up: "# key = ..." and "# [section]" without the "# ".
+std::string with_optional_keys(const std::string& toml) {
+  std::string text;
+  for (std::size_t at = 0; at < toml.size();) {
+    const std::size_t end = std::min(toml.find('\n', at), toml.size() - 1) + 1;
+    const std::string line = toml.substr(at, end - at);
+    const std::size_t word = line.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", 2);
+    const bool optional = line.starts_with("# [") ||
+                          (line.starts_with("# ") && word > 2 && line.compare(word, 3, " = ") == 0);
+    text += optional ? line.substr(2) : line;
+    at = end;
+  }
+  return text;
+}
+
+TEST(Draft, OffersOptionalKeysAsTheyAreWritten) {
+  const TestFolder folder;
+  write_maps(folder, {"0Pa.gsf", "1kPa.gsf", "2kPa.gsf", "Q5mlmin.gsf"});
+  draft_experiment(folder.path());
+  folder.write("flat.gsf", tiny_gsf());
+  std::string toml = with_optional_keys(text_of(folder.path() / "experiment.toml"));
+  for (const auto& [gap, value] :
+       {std::pair{"? mm", "2 mm"}, std::pair{"? um", "175 um"}, std::pair{"? Pa", "8 Pa"}}) {
+    while (toml.find(gap) != std::string::npos) toml = replaced(toml, gap, value);
+  }
+  folder.write("experiment.toml", toml);
+  const Experiment experiment = read_experiment(folder.path());
+  EXPECT_EQ(experiment.inlet.spread, 0.3);
+  EXPECT_EQ(experiment.instrument.pressure_drop_uncertainty, 5.0 * Pa);
+  ASSERT_TRUE(experiment.rigid.inlet && experiment.rigid.outlet);
+  EXPECT_TRUE(experiment.rigid.inlet->fittings.from_reservoir);
+  EXPECT_TRUE(experiment.wall && experiment.channel.origin && experiment.instrument.reference);
 }
 
 TEST(Draft, DoesWithoutFlow) {

@@ -73,6 +73,11 @@ std::string draft_toml(const std::string& name, const std::optional<CameraGrid>&
   text +=
       "# outward = \"+height\"        # does a wall bulging away from the fluid read higher or "
       "lower?\n"
+      "\n# [inlet]\n"
+      "# profile = \"developed\"   # how the flow enters: \"developed\" out of a long duct of the "
+      "channel's section, \"uniform\" out of a chamber\n"
+      "# spread = 0.3            # 0 to 1: how far it may be from that, towards the other; not "
+      "known when absent\n"
       "\n# [wall]\n"
       "# thickness = \"? um\"   # lets p(x) be read to within 0.3 mm of the ends; no more is "
       "needed\n"
@@ -87,11 +92,19 @@ std::string draft_toml(const std::string& name, const std::optional<CameraGrid>&
       "# pressure_zero_uncertainty = \"5 Pa\"   # of the gauge, common to all levels\n"
       "# pressure_gain_uncertainty = 0.002\n"
       "# flow_rate_uncertainty = 0.01         # relative, common to all runs\n"
+      "# pressure_drop_uncertainty = \"5 Pa\"   # standard, of one reading of the drop under flow\n"
       "# reference = \"flat.gsf\"    # the instrument's own map of a flat\n"
       "\n[hydrostatic]\n"
       "list = \"hydrostatic.csv\"\n";
   text += with_flow ? "\n[flow]\nlist = \"flow.csv\"\n"
                     : "\n# No map is named like one under flow.\n# [flow]\n# list = \"flow.csv\"\n";
+  text +=
+      "\n# [rigid]   # passages between the channel and the gauges, if readings of the drop "
+      "include them\n"
+      "# inlet = {length = \"? mm\", width = \"? mm\", height = \"? um\", from_reservoir = true, "
+      "round_bends = 1}\n"
+      "# outlet = {length = \"? mm\", width = \"? mm\", height = \"? um\", into_reservoir = "
+      "true}\n";
   if (!unassigned.empty()) {
     text += "\n# In neither list, for their names tell neither pressure nor flow rate:\n";
     for (const std::string& map : unassigned) {
@@ -123,8 +136,9 @@ std::string draft_hydrostatic(const std::vector<GuessedMap>& maps) {
 
 std::string draft_flow(const std::vector<GuessedMap>& maps) {
   std::string comments =
-      "# Maps under flow. Columns that may be added: pressure_drop [Pa], outlet_pressure [Pa],\n"
-      "# time [s]. Maps of one run share its name.\n";
+      "# Maps under flow. Columns that may be added: pressure_drop [Pa], pressure_drop_uncertainty "
+      "[Pa],\n"
+      "# outlet_pressure [Pa], time [s]. Maps of one run share its name.\n";
   std::string rows = "map,flow_rate [mL/min],run\n";
   for (const GuessedMap& map : maps) {
     const bool known = map.guess.flow_rate.has_value();

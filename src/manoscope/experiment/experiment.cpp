@@ -8,6 +8,7 @@
 #include "manoscope/experiment/list_checks.hpp"
 #include "manoscope/experiment/lists.hpp"
 #include "manoscope/experiment/map_files.hpp"
+#include "manoscope/experiment/rigid_section.hpp"
 #include "manoscope/experiment/sections.hpp"
 #include "manoscope/io/table_reader.hpp"
 #include "manoscope/io/toml_document.hpp"
@@ -72,11 +73,12 @@ void read_sections(io::TableReader& root, Experiment& experiment, io::Faults& fa
   if (auto table = root.table("channel", io::Need::required)) {
     experiment.channel = read_channel(*table, faults);
   }
+  if (auto table = root.table("inlet")) experiment.inlet = read_inlet(*table, faults);
   if (auto table = root.table("wall")) experiment.wall = read_wall(*table);
   if (auto table = root.table("fluid", io::Need::required)) {
     experiment.fluid = read_fluid(*table, faults);
   }
-  if (auto table = root.table("rigid")) experiment.rigid = read_rigid(*table);
+  if (auto table = root.table("rigid")) experiment.rigid = read_rigid(*table, faults);
 }
 
 void read_maps(io::TableReader& root, Experiment& experiment, io::Faults& faults) {
@@ -89,7 +91,7 @@ void read_maps(io::TableReader& root, Experiment& experiment, io::Faults& faults
   if (auto table = root.table("hydrostatic", io::Need::required)) {
     hydrostatic = read_hydrostatic(*table, instrument, files, faults);
   }
-  if (auto table = root.table("flow")) flow = read_flow(*table, files, faults);
+  if (auto table = root.table("flow")) flow = read_flow(*table, instrument, files, faults);
   check_lists(hydrostatic, flow, faults);
   if (instrument.reference) {
     const io::Place place = instrument_table->place("reference");

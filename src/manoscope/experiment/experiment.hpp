@@ -8,6 +8,8 @@
 
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/units.hpp"
+#include "manoscope/flow/marching.hpp"
+#include "manoscope/flow/passage_losses.hpp"
 
 namespace manoscope::experiment {
 
@@ -22,6 +24,16 @@ struct ChannelSection {
   std::optional<FlowDirection> flow;
   std::optional<Angle> rotation;
   std::optional<Outward> outward;
+};
+
+/// How the flow enters the channel.
+struct InletSection {
+  flow::InletProfile profile = flow::InletProfile::developed;
+  /// How far the true profile may lie from `profile` towards the other one, as a fraction of the
+  /// way, in [0, 1]. Absent = not known.
+  std::optional<double> spread;
+  /// Duct of the channel's first section between the uniform profile and x = 0.
+  Length developing_length{};
 };
 
 struct WallSection {
@@ -47,6 +59,7 @@ struct InstrumentSection {
   std::optional<double> pressure_gain_uncertainty;    ///< relative, common to all levels
   std::optional<Pressure> pressure_zero_uncertainty;  ///< common to all levels
   std::optional<double> flow_rate_uncertainty;        ///< relative, common to all runs
+  std::optional<Pressure> pressure_drop_uncertainty;  ///< standard, of one reading of the drop
   /// What the map files do not say themselves: distance of columns and of rows, unit of the
   /// heights, name of the channel to read.
   std::optional<std::array<Length, 2>> pixel_pitch;
@@ -79,6 +92,9 @@ struct FlowMap {
   FlowRate flow_rate{};
   std::optional<Pressure>
       pressure_drop;  ///< transducer, inlet minus outlet, parasitic part included
+  /// Standard, of this one reading of the drop: as the list says, else
+  /// instrument.pressure_drop_uncertainty; nullopt if neither is given.
+  std::optional<Pressure> pressure_drop_uncertainty;
   std::optional<Pressure> outlet_pressure;
   std::optional<Time> time;
   std::string run;  ///< "" in the file becomes the map's name without extension
@@ -88,10 +104,14 @@ struct FlowMap {
 /// A rigid passage between the channel and a gauge.
 struct Passage {
   Length length{}, width{}, height{};
+  flow::PassageFittings fittings;  ///< steps at its ends and bends in it
 };
 
 struct RigidSection {
   std::optional<Passage> inlet, outlet;
+  /// Drop of both passages together from a simulation, in the order of the file; replaces the
+  /// formulas. Empty = none. An uncertainty of 0 = none given.
+  std::vector<flow::SimulatedDrop> simulated;
 };
 
 /// One experiment file, checked whole: units understood, maps there, lists read.
@@ -100,6 +120,7 @@ struct Experiment {
   std::string text;            ///< its content, verbatim
   std::string name;
   ChannelSection channel;
+  InletSection inlet;
   std::optional<WallSection> wall;
   FluidSection fluid;
   InstrumentSection instrument;

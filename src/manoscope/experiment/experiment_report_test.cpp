@@ -29,7 +29,12 @@ TEST(ReadExperiment, TellsEveryFaultOfAllFilesTogether) {
   folder.write("experiment.toml",
                "manoscope = 1\n[channel]\nlength = 15.5\nwidth = \"1.7 kPa\"\nheigth = \"1 um\"\n"
                "flow = \"left\"\n[wall]\npoisson_ratio = 0.7\n[fluid]\ndensity = \"998 kg\"\n"
-               "[hydrostatic]\nlist = \"hydrostatic.csv\"\n[flow]\nlist = \"flow.csv\"\n");
+               "[hydrostatic]\nlist = \"hydrostatic.csv\"\n[flow]\nlist = \"flow.csv\"\n"
+               "[inlet]\nprofile = \"turbulent\"\nspread = 2\ndeveloping_length = 2\n"
+               "[instrument]\npressure_drop_uncertainty = \"5 um\"\n[rigid]\n"
+               "inlet = {length = \"5 mm\", width = \"1.7 mm\", round_bends = -1, "
+               "from = \"4 mm\"}\n"
+               "simulated = [{flow_rate = 5}, {drop = \"1 Pa\", flow_rate = \"0 mL/min\"}]\n");
   folder.write("hydrostatic.csv",
                "map,pressure [Pa],drift\nh00.gsf,zero,\nh01.gsf\nh77.gsf,100,\nh01.gsf,5,\n");
   folder.write("flow.csv", "map,flow_rate\nf00.gsf,5\nf00.gsf,6\n");
@@ -45,6 +50,16 @@ TEST(ReadExperiment, TellsEveryFaultOfAllFilesTogether) {
             "experiment.toml:8: wall.poisson_ratio\n"
             "experiment.toml:9: fluid.viscosity\n"
             "experiment.toml:10: fluid.density\n"
+            "experiment.toml:16: inlet.profile\n"
+            "experiment.toml:17: inlet.spread\n"
+            "experiment.toml:18: inlet.developing_length\n"
+            "experiment.toml:20: instrument.pressure_drop_uncertainty\n"
+            "experiment.toml:22: rigid.inlet.from\n"
+            "experiment.toml:22: rigid.inlet.round_bends\n"
+            "experiment.toml:22: rigid.inlet.height\n"
+            "experiment.toml:23: rigid.simulated entry 1: flow_rate\n"
+            "experiment.toml:23: rigid.simulated entry 1: drop\n"
+            "experiment.toml:23: rigid.simulated entry 2: flow_rate\n"
             "hydrostatic.csv:1: drift\n"
             "hydrostatic.csv:2: pressure\n"
             "hydrostatic.csv:3\n"

@@ -50,8 +50,32 @@ TEST(ReadExperiment, UnderstandsEveryKeyOfTheManual) {
   EXPECT_EQ(e.instrument.pressure_gain_uncertainty, 0.002);
   expect_si(e.instrument.pressure_zero_uncertainty->si(), 5.0);
   EXPECT_EQ(e.instrument.reference, folder.path() / "flat.gsf");
+  expect_si(e.instrument.pressure_drop_uncertainty->si(), 4.0);
+  EXPECT_EQ(e.inlet.profile, flow::InletProfile::uniform);
+  EXPECT_EQ(e.inlet.spread, 0.3);
+  expect_si(e.inlet.developing_length.si(), 2e-3);
   expect_si(e.rigid.inlet->length.si(), 5e-3);
   expect_si(e.rigid.outlet->length.si(), 6e-3);
+  const flow::PassageFittings& in = e.rigid.inlet->fittings;
+  EXPECT_EQ(in.from, std::nullopt);
+  EXPECT_TRUE(in.from_reservoir);
+  expect_si(in.into->si(), 0.3e-6);
+  EXPECT_FALSE(in.into_reservoir);
+  EXPECT_EQ(in.round_bends, 2);
+  EXPECT_EQ(in.mitre_bends, 0);
+  const flow::PassageFittings& out = e.rigid.outlet->fittings;
+  expect_si(out.from->si(), 1e-6);
+  EXPECT_FALSE(out.from_reservoir);
+  EXPECT_EQ(out.into, std::nullopt);
+  EXPECT_TRUE(out.into_reservoir);
+  EXPECT_EQ(out.round_bends, 0);
+  EXPECT_EQ(out.mitre_bends, 1);
+  ASSERT_EQ(e.rigid.simulated.size(), 2u);
+  expect_si(e.rigid.simulated[0].flow_rate.si(), 20e-6 / 60);
+  expect_si(e.rigid.simulated[0].drop.si(), 310.0);
+  expect_si(e.rigid.simulated[0].uncertainty.si(), 10.0);
+  expect_si(e.rigid.simulated[1].drop.si(), 1400.0);
+  EXPECT_EQ(e.rigid.simulated[1].uncertainty, Pressure{});
 }
 
 TEST(ReadExperiment, UnderstandsEveryColumnOfTheManual) {
@@ -74,6 +98,8 @@ TEST(ReadExperiment, UnderstandsEveryColumnOfTheManual) {
   ASSERT_EQ(e.flow.size(), 3u);
   expect_si(e.flow[1].flow_rate.si(), 5e-6 / 60);
   expect_si(e.flow[1].pressure_drop->si(), 1424.0);
+  expect_si(e.flow[0].pressure_drop_uncertainty->si(), 3.0);
+  expect_si(e.flow[1].pressure_drop_uncertainty->si(), 4.0);  // of the instrument
   expect_si(e.flow[1].outlet_pressure->si(), 30.0);
   expect_si(e.flow[1].time->si(), 1.5);
   EXPECT_EQ(e.flow[1].run, "Q5");
@@ -105,6 +131,12 @@ TEST(ReadExperiment, NeedsOnlyWhatTheMeasurementNeeds) {
   EXPECT_EQ(e.channel.origin, std::nullopt);
   EXPECT_FALSE(e.wall);
   EXPECT_TRUE(e.flow.empty());
+  EXPECT_EQ(e.inlet.profile, flow::InletProfile::developed);
+  EXPECT_EQ(e.inlet.spread, std::nullopt);  // not known, which is not the same as 0
+  EXPECT_EQ(e.inlet.developing_length, Length{});
+  EXPECT_FALSE(e.rigid.inlet);
+  EXPECT_TRUE(e.rigid.simulated.empty());
+  EXPECT_EQ(e.instrument.pressure_drop_uncertainty, std::nullopt);
 }
 
 TEST(ReadExperiment, TakesAMapForVentedOnlyWhereTheListSaysZeroTwice) {
@@ -143,7 +175,8 @@ TEST(ReadExperiment, TakesListsInlineAsWell) {
                               "  {map = \"h02.gsf\", pressure = \"2.5 kPa\"}]");
   toml = replaced(toml, "list = \"flow.csv\"",
                   "maps = [{map = \"f00.gsf\", flow_rate = \"5 mL/min\", run = \"Q5\", "
-                  "pressure_drop = \"1.42 kPa\", time = \"2 min\"}]");
+                  "pressure_drop = \"1.42 kPa\", time = \"2 min\", "
+                  "pressure_drop_uncertainty = \"0.2 mbar\"}]");
   folder.write("experiment.toml", toml);
   const Experiment e = read_experiment(folder.path());
   ASSERT_EQ(e.hydrostatic.size(), 3u);
@@ -151,10 +184,30 @@ TEST(ReadExperiment, TakesListsInlineAsWell) {
   EXPECT_TRUE(e.hydrostatic[0].vented);
   expect_si(e.hydrostatic[1].pressure.si(), 100.0);
   expect_si(e.hydrostatic[1].pressure_uncertainty->si(), 10.0);
-  EXPECT_EQ(e.hydrostatic[2].line, 39);
+  EXPECT_EQ(e.hydrostatic[2].line, 40);
   ASSERT_EQ(e.flow.size(), 1u);
   expect_si(e.flow[0].pressure_drop->si(), 1420.0);
+  expect_si(e.flow[0].pressure_drop_uncertainty->si(), 20.0);
   expect_si(e.flow[0].time->si(), 120.0);
+}
+
+TEST(ReadExperiment, KnowsNoUncertaintyOfADropThatNeitherListNorInstrumentGives) {
+  const TestFolder folder;
+  write_full_example(folder);
+  folder.write("experiment.toml",
+               replaced(kFullToml, "pressure_drop_uncertainty = \"4 Pa\"\n", ""));
+  const Experiment e = read_experiment(folder.path());
+  expect_si(e.flow[0].pressure_drop_uncertainty->si(), 3.0);
+  EXPECT_EQ(e.flow[1].pressure_drop_uncertainty, std::nullopt);
+}
+
+TEST(ReadExperiment, TakesASpreadOfNothingAndOfTheWholeWay) {
+  const TestFolder folder;
+  write_full_example(folder);
+  for (const auto& [text, spread] : {std::pair{"spread = 0", 0.0}, std::pair{"spread = 1", 1.0}}) {
+    folder.write("experiment.toml", replaced(kFullToml, "spread = 0.3", text));
+    EXPECT_EQ(read_experiment(folder.path()).inlet.spread, spread);
+  }
 }
 
 TEST(ReadExperiment, TakesTheTablesThatSpreadsheetsWrite) {

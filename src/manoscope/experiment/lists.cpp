@@ -22,6 +22,7 @@ constexpr ListColumn kFlowColumns[] = {
     {"map", kNoUnit, io::Need::required},
     {"flow_rate", io::unit_info<FlowRate>(), io::Need::required},
     {"pressure_drop", io::unit_info<Pressure>(), io::Need::optional},
+    {"pressure_drop_uncertainty", io::unit_info<Pressure>(), io::Need::optional},
     {"outlet_pressure", io::unit_info<Pressure>(), io::Need::optional},
     {"time", io::unit_info<Time>(), io::Need::optional},
     {"run", kNoUnit, io::Need::optional}};
@@ -47,13 +48,16 @@ HydrostaticMap hydrostatic_row(Row& row, const std::optional<Pressure>& default_
 }
 
 template <class Row>
-FlowMap flow_row(Row& row) {
+FlowMap flow_row(Row& row, const std::optional<Pressure>& default_uncertainty) {
   FlowMap map;
   map.name = row.text("map", io::Need::required).value_or("");
   map.flow_rate =
       row.template quantity<FlowRate>("flow_rate", io::bounds::kFlowRate, io::Need::required)
           .value_or(FlowRate{});
   map.pressure_drop = row.template quantity<Pressure>("pressure_drop", io::bounds::kPressureDrop);
+  map.pressure_drop_uncertainty = row.template quantity<Pressure>("pressure_drop_uncertainty",
+                                                                  io::bounds::kPressureUncertainty);
+  if (!map.pressure_drop_uncertainty) map.pressure_drop_uncertainty = default_uncertainty;
   map.outlet_pressure =
       row.template quantity<Pressure>("outlet_pressure", io::bounds::kGaugePressure);
   map.time = row.template quantity<Time>("time", io::bounds::kTime);
@@ -148,9 +152,11 @@ MapList<HydrostaticMap> read_hydrostatic(io::TableReader& section,
       files, faults, [&](auto& row) { return hydrostatic_row(row, instrument.pressure_noise); });
 }
 
-MapList<FlowMap> read_flow(io::TableReader& section, MapFiles& files, io::Faults& faults) {
-  return read_list<FlowMap>(section, "flow", "{map = \"f00.gsf\", flow_rate = \"5 mL/min\"}",
-                            kFlowColumns, files, faults, [](auto& row) { return flow_row(row); });
+MapList<FlowMap> read_flow(io::TableReader& section, const InstrumentSection& instrument,
+                           MapFiles& files, io::Faults& faults) {
+  return read_list<FlowMap>(
+      section, "flow", "{map = \"f00.gsf\", flow_rate = \"5 mL/min\"}", kFlowColumns, files, faults,
+      [&](auto& row) { return flow_row(row, instrument.pressure_drop_uncertainty); });
 }
 
 }  // namespace manoscope::experiment

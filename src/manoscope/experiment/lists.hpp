@@ -32,8 +32,10 @@ MapList<HydrostaticMap> read_hydrostatic(io::TableReader& section,
                                          const InstrumentSection& instrument, MapFiles& files,
                                          io::Faults& faults);
 
-/// Reads section [flow] in the same way. A row without `run` is a run of its own, named after the
-/// map without its extension.
-MapList<FlowMap> read_flow(io::TableReader& section, MapFiles& files, io::Faults& faults);
+/// Reads section [flow] in the same way. A row without `pressure_drop_uncertainty` gets
+/// `instrument.pressure_drop_uncertainty`, if that is given. A row without `run` is a run of its
+/// own, named after the map without its extension.
+MapList<FlowMap> read_flow(io::TableReader& section, const InstrumentSection& instrument,
+                           MapFiles& files, io::Faults& faults);
 
 }  // namespace manoscope::experiment

@@ -13,6 +13,14 @@ constexpr io::Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirectio
                                                        {"-rows", FlowDirection::minus_rows}};
 constexpr io::Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
                                            {"-height", Outward::minus_height}};
+constexpr io::Word<flow::InletProfile> kInletProfiles[] = {
+    {"developed", flow::InletProfile::developed}, {"uniform", flow::InletProfile::uniform}};
+
+constexpr io::Bounds kSpread{0.0, 1.0, false,
+                             "The spread is a fraction of the way to the other profile: 0 claims "
+                             "`profile` as it stands, 1 leaves open which of the two it is"};
+constexpr io::Bounds kDevelopingLength{
+    0.0, 1.0, false, "The duct before x = 0 is zero or more and at most 1 m long", "2 mm"};
 
 /// The gap is the small side: another order is a slip of unit or of name.
 void check_proportions(const ChannelSection& channel, const io::TableReader& table,
@@ -41,20 +49,6 @@ void check_proportions(const ChannelSection& channel, const io::TableReader& tab
   }
 }
 
-std::optional<Passage> read_passage(io::TableReader& rigid, const std::string& key) {
-  auto table = rigid.table(key);
-  if (!table) return std::nullopt;
-  Passage passage;
-  passage.length =
-      table->quantity<Length>("length", io::bounds::kLength, io::Need::required).value_or(Length{});
-  passage.width =
-      table->quantity<Length>("width", io::bounds::kWidth, io::Need::required).value_or(Length{});
-  passage.height =
-      table->quantity<Length>("height", io::bounds::kHeight, io::Need::required).value_or(Length{});
-  table->finish();
-  return passage;
-}
-
 }  // namespace
 
 ChannelSection read_channel(io::TableReader& table, io::Faults& faults) {
@@ -74,6 +68,26 @@ ChannelSection read_channel(io::TableReader& table, io::Faults& faults) {
   table.finish();
   check_proportions(channel, table, faults);
   return channel;
+}
+
+InletSection read_inlet(io::TableReader& table, io::Faults& faults) {
+  InletSection inlet;
+  const auto profile = table.choice("profile", kInletProfiles);
+  inlet.profile = profile.value_or(inlet.profile);
+  inlet.spread = table.number("spread", kSpread, "0.3");
+  const auto length = table.quantity<Length>("developing_length", kDevelopingLength);
+  inlet.developing_length = length.value_or(Length{});
+  table.finish();
+  // A profile at fault may have been meant to be uniform.
+  const bool developed = profile == flow::InletProfile::developed || !table.has("profile");
+  if (length && developed) {
+    faults.add(table.place("developing_length"),
+               table.has("profile") ? "a developing length of a flow that is developed"
+                                    : "a developing length without a profile that develops",
+               "Write profile = \"uniform\" if the flow begins to develop this far before x = 0, "
+               "or remove the key");
+  }
+  return inlet;
 }
 
 WallSection read_wall(io::TableReader& table) {
@@ -120,20 +134,14 @@ InstrumentSection read_instrument(io::TableReader& table) {
       table.quantity<Pressure>("pressure_zero_uncertainty", io::bounds::kPressureUncertainty);
   instrument.flow_rate_uncertainty =
       table.number("flow_rate_uncertainty", io::bounds::kRelativeFlowUncertainty, "0.01");
+  instrument.pressure_drop_uncertainty =
+      table.quantity<Pressure>("pressure_drop_uncertainty", io::bounds::kPressureUncertainty);
   instrument.pixel_pitch = table.pair<Length>("pixel_pitch", io::bounds::kPixelPitch);
   instrument.height_unit = table.text("height_unit").value_or("");
   instrument.channel = table.text("channel").value_or("");
   if (const auto reference = table.text("reference")) instrument.reference = *reference;
   table.finish();
   return instrument;
-}
-
-RigidSection read_rigid(io::TableReader& table) {
-  RigidSection rigid;
-  rigid.inlet = read_passage(table, "inlet");
-  rigid.outlet = read_passage(table, "outlet");
-  table.finish();
-  return rigid;
 }
 
 }  // namespace manoscope::experiment

@@ -68,6 +68,7 @@ pressure_noise = "10 Pa"
 pressure_gain_uncertainty = 0.002
 pressure_zero_uncertainty = "5 Pa"
 flow_rate_uncertainty = 0.01
+pressure_drop_uncertainty = "4 Pa"
 reference = "flat.gsf"
 
 [hydrostatic]
@@ -77,8 +78,16 @@ list = "hydrostatic.csv"
 list = "flow.csv"
 
 [rigid]
-inlet  = {length = "5 mm", width = "1.7 mm", height = "175 um"}
-outlet = {length = "6 mm", width = "1.7 mm", height = "175 um"}
+inlet  = {length = "5 mm", width = "1.7 mm", height = "175 um", from_reservoir = true, into = "0.3 mm2", round_bends = 2}
+outlet = {length = "6 mm", width = "1.7 mm", height = "175 um", from = "1 mm2", into_reservoir = true, mitre_bends = 1}
+simulated = [
+  {flow_rate = "20 mL/min", drop = "310 Pa", uncertainty = "10 Pa"},
+  {flow_rate = "70 mL/min", drop = "1.4 kPa"}]
+
+[inlet]
+profile = "uniform"
+spread = 0.3
+developing_length = "2 mm"
 )";
 
 inline const char* const kFullHydrostatic =
@@ -89,10 +98,11 @@ inline const char* const kFullHydrostatic =
     "h03.gsf,100,15,3,down\n";
 
 inline const char* const kFullFlow =
-    "map,flow_rate [mL/min],pressure_drop [Pa],outlet_pressure [Pa],time [s],run\n"
-    "f00.gsf,5,1420,,,Q5\n"
-    "f01.gsf,5,1424,30,1.5,Q5\n"
-    "f02.gsf,70,,,,\n";
+    "map,flow_rate [mL/min],pressure_drop [Pa],outlet_pressure [Pa],time [s],run,"
+    "pressure_drop_uncertainty [Pa]\n"
+    "f00.gsf,5,1420,,,Q5,3\n"
+    "f01.gsf,5,1424,30,1.5,Q5,\n"
+    "f02.gsf,70,,,,,\n";
 
 /// Writes the full example with maps that are there and not empty.
 inline void write_full_example(const TestFolder& folder) {

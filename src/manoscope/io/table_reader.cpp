@@ -188,11 +188,11 @@ std::optional<std::size_t> TableReader::choose(const std::string& key,
   return std::nullopt;
 }
 
-const TomlValue* TableReader::list(const std::string& key) {
+const TomlValue* TableReader::list(const std::string& key, const char* item) {
   const TomlValue* value = find(key, Need::optional, "");
   if (value != nullptr && value->kind != Kind::list) {
     faults_->add(place(key), fmt::format("{} is no list", describe(*value)),
-                 fmt::format("Write {} = [{{map = \"a.gsf\", ...}}, ...]", key));
+                 fmt::format("Write {} = [{}, ...]", key, item));
     return nullptr;
   }
   return value;

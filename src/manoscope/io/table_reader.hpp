@@ -67,8 +67,8 @@ class TableReader {
     const auto chosen = choose(key, names);
     return chosen ? std::optional<E>(words[*chosen].value) : std::nullopt;
   }
-  /// A list of tables, nullptr if absent or no list.
-  const TomlValue* list(const std::string& key);
+  /// A list of tables, nullptr if absent or no list; `item` shows how to write one of them.
+  const TomlValue* list(const std::string& key, const char* item = "{map = \"a.gsf\", ...}");
   std::optional<TableReader> table(const std::string& key, Need need = Need::optional);
 
   /// Reports unknown and missing keys. A missing key that an unknown one was meant to be is told
