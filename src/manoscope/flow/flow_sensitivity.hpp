@@ -37,7 +37,8 @@ struct FlowSensitivity {
 /// Accuracy: by_zeta within 1e-3 of the greatest derivative for models that do not march, by_height
 /// 0.5 %. The marches take by_zeta from `momentum`, which is right in friction and up to a tenth or
 /// two off where inertia is as large as friction: enough for an error bar, and three orders of
-/// magnitude faster; their other derivatives are their own. Validity: that of the model.
+/// magnitude faster; section-march takes the other derivatives from plane-march, within 2 % (test).
+/// Validity: that of the model.
 ///
 /// @throws InputError as pressure_along(), or if a deflection leaves the tables.
 FlowSensitivity flow_sensitivity(FlowModel model, const FlowCase& flow,

@@ -108,9 +108,12 @@ FlowFindings compare_flow(const experiment::Experiment& experiment,
     }
   }
   found.prediction = attempt("predicted drop", found.failures, [&] {
+    validation::PredictFlowOptions coupling;
+    coupling.healing_length = knowledge->healing_length;
     return validation::predict_flow(
         knowledge->curves, setup, model, run.flow_rate,
-        outlet_of(experiment, run.flow_rate, run.outlet_pressure, &reading), gauge_of(experiment));
+        outlet_of(experiment, run.flow_rate, run.outlet_pressure, &reading), gauge_of(experiment),
+        coupling);
   });
   return found;
 }

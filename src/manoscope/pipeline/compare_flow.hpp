@@ -18,7 +18,7 @@ namespace manoscope::pipeline {
 struct CompareFlowOptions {
   bool flow_models = true;  ///< off: eq. (4) alone
   std::string verdict_model = "section-march";
-  int flow_stations = 200;
+  int flow_stations = 120;
   bool joint = false;
   validation::CompareModelsOptions models;
 

@@ -62,6 +62,25 @@ validation::Outlet continued(const inversion::PressureReading& reading, Length l
           Pressure::from_si(std::hypot(own, 0.5 * fall))};
 }
 
+/// About n of the stations inside the channel, five times as dense at its ends as in the middle:
+/// there the wall rises within a length like the width.
+std::vector<Index> graded_stations(const Array1& x, const flow::Channel& channel, Index n) {
+  constexpr double kDenser = 4.0;
+  const double l = channel.length.si(), w = channel.width.si();
+  const auto place = [&](double at) {  // integral of 1 + kDenser (exp(-x/w) + exp(-(l - x)/w))
+    return at + kDenser * w * (1.0 - std::exp(-at / w) + std::exp((at - l) / w) - std::exp(-l / w));
+  };
+  const double step = place(l) / static_cast<double>(n);
+  std::vector<Index> stations;
+  double next = 0.0;
+  for (Index ix = 0; ix < x.size(); ++ix) {
+    if (x[ix] < 0.0 || x[ix] > l || place(x[ix]) < next) continue;
+    stations.push_back(ix);
+    next = place(x[ix]) + 0.999 * step;
+  }
+  return stations;
+}
+
 std::string inlet_words(const Experiment& experiment) {
   const experiment::InletSection& inlet = experiment.inlet;
   const char* const profile =
@@ -149,8 +168,7 @@ FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& r
       known.setup.shape.crest(), shape ? "" : " (a parabola, since the maps do not show it)",
       inlet_words(experiment));
 
-  known.stations =
-      inversion::some_stations(curves.x, {Length{}, experiment.channel.length}, n_stations);
+  known.stations = graded_stations(curves.x, known.setup.channel, n_stations);
   known.curves = inversion::thinned(curves, known.stations);
   const validation::CurvedWall wall(known.curves, experiment.channel.length,
                                     validation::PredictFlowOptions{}.largest_extrapolation);

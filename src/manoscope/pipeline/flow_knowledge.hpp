@@ -26,6 +26,8 @@ struct FlowKnowledge {
   std::string words;            ///< section and inlet
   std::vector<Index> stations;  ///< of the curves, at which models are run
   calibration::ConstitutiveCurves curves;  ///< at these stations
+  /// Over which the fitted wall forgets a disturbance; none without a fitted wall.
+  std::optional<Length> healing_length;
 };
 
 /// Section shape from the picture of the wall's response, inlet and uncertainties from the

@@ -83,6 +83,8 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
                                         calibration.runs, measure.flow.flow_stations);
   Predictions result;
   result.setup = known.words;
+  validation::PredictFlowOptions coupling = options.coupling;
+  if (!coupling.healing_length) coupling.healing_length = healing_length(calibration);
   std::optional<OutletLine> line;
   if (options.outlet_pressure) {
     result.outlet = "as given";
@@ -107,7 +109,7 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
     setup.inlet_spread = inlet_spread(experiment, flow_rate);
     result.flows[static_cast<std::size_t>(i)] =
         validation::predict_flow(known.curves, setup, flow::flow_model(options.model), flow_rate,
-                                 outlet, gauge_of(experiment), options.coupling);
+                                 outlet, gauge_of(experiment), coupling);
   });
   return result;
 }

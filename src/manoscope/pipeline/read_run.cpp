@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "manoscope/core/error.hpp"
@@ -73,12 +74,20 @@ Calibration calibrate(const Experiment& experiment, const MeasureOptions& option
   return found;
 }
 
+std::optional<Length> healing_length(const Calibration& calibration) {
+  // A ripple of which half is left: (2 pi L/lambda)^2 = 1.
+  if (!calibration.wall || !(calibration.wall->half_wavelength > 0.0)) return std::nullopt;
+  return Length::from_si(calibration.wall->half_wavelength / (2.0 * std::numbers::pi));
+}
+
 std::optional<FlowKnowledge> find_flow(const Experiment& experiment, const Calibration& calibration,
                                        const MeasureOptions& options, std::string& reason) {
   if (calibration.runs.empty() || !options.flow.flow_models) return std::nullopt;
   try {
-    return know_flow(experiment, calibration.reduced, calibration.curves, calibration.runs,
-                     options.flow.flow_stations);
+    FlowKnowledge known = know_flow(experiment, calibration.reduced, calibration.curves,
+                                    calibration.runs, options.flow.flow_stations);
+    known.healing_length = healing_length(calibration);
+    return known;
   } catch (const InputError& error) {
     reason = fmt::format("{} {}", error.where(), error.found());
     return std::nullopt;

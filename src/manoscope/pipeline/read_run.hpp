@@ -28,6 +28,9 @@ struct Calibration {
 Calibration calibrate(const experiment::Experiment& experiment, const MeasureOptions& options,
                       int n_threads, const Monitor& monitor);
 
+/// sqrt(-b/a) of the fitted wall, at mid-channel under the middle level; none without one.
+std::optional<Length> healing_length(const Calibration& calibration);
+
 /// Reads p(x) of one run, finds its test section, and compares it with the flow.
 /// @param flow  none if flow models are not run.
 RunFindings read_run(const experiment::Experiment& experiment, const Calibration& calibration,

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/numerics/chi_square.hpp"
@@ -14,7 +13,8 @@
 namespace manoscope::validation {
 namespace {
 
-constexpr double kSettled = 1e-7;     // relative change of the value: far below any uncertainty
+constexpr double kSettled = 1e-6;     // relative change of the value: far below any uncertainty
+constexpr double kFar = 0.05;         // of the logarithm: derivatives are good to a tenth of that
 constexpr double kLongestStep = 0.7;  // of the logarithm: a factor of two
 
 enum class Unknown { flow_rate, viscosity };
@@ -35,26 +35,29 @@ class Fit {
   /// Solves for the unknown from where the trial stands, and leaves it at the answer.
   ///
   /// Newton's method on the weighted sum of the differences, whose slope the weights make 1; the
-  /// weights, which cost derivatives in every zeta, are formed anew only where it has settled.
+  /// weights, which cost derivatives in every zeta, are formed anew only where the unknown has gone
+  /// far since.
   InferredFlow solve(Trial& trial, const WallLine& line, int most_steps) const {
     InferredFlow found;
-    Array1 weights;
-    std::optional<double> change;
+    ModelledRun run = modelled_run(model_, trial.setup, trial.flow_rate, line);
+    Array1 weights = best_weights(trial.setup, run);
+    double gone = 0.0;
     for (found.steps = 1; found.steps <= most_steps; ++found.steps) {
-      if (!change || std::abs(*change) < kSettled) {
-        const ModelledRun run = modelled_run(model_, trial.setup, trial.flow_rate, line);
-        if (!run.pressure().isFinite().all()) break;
+      if (!run.pressure().isFinite().all()) break;
+      const double change = (weights * difference(line, run.pressure())).sum();
+      if (!std::isfinite(change)) break;
+      if (std::abs(change) < kSettled) return finish(found, trial, run, weights);
+      const double step = std::clamp(change, -kLongestStep, kLongestStep);
+      scale(trial, std::exp(step));
+      gone += step;
+      if (std::abs(gone) > kFar) {
+        run = modelled_run(model_, trial.setup, trial.flow_rate, line);
         weights = best_weights(trial.setup, run);
-        const double left = (weights * difference(line, run.pressure())).sum();
-        if (change && std::abs(left) < kSettled) return finish(found, trial, run, weights);
-        change = left;
+        gone = 0.0;
       } else {
-        const flow::FlowCase flow = flow_case(trial.setup, trial.flow_rate, line);
-        const Array1 p = flow::pressure_along(model_, flow, *trial.setup.tables).pressure;
-        change = (weights * difference(line, p)).sum();
+        run.sensitivity.modelled = flow::pressure_along(
+            model_, flow_case(trial.setup, trial.flow_rate, line), *trial.setup.tables);
       }
-      if (!std::isfinite(*change)) break;
-      scale(trial, std::exp(std::clamp(*change, -kLongestStep, kLongestStep)));
     }
     throw InputError(
         "flow from the deflection",
@@ -161,6 +164,11 @@ InferredFlow infer(Unknown unknown, Trial trial, flow::FlowModel model, const Pr
   const flow::ModelledPressure start =
       flow::pressure_along(flow::FlowModel::paper, flow_case(trial.setup, trial.flow_rate, line));
   fit.scale(trial, fit.read()[0] / (on_line(pieces, line) * start.pressure.matrix())(0));
+  if (flow::flow_model_info(model).needs_forward_flow) {
+    // Costly ones begin where a cheap one ends.
+    Fit(unknown, flow::FlowModel::momentum, state, reading, pieces)
+        .solve(trial, line, options.most_steps);
+  }
   return fit.solve(trial, line, options.most_steps);
 }
 

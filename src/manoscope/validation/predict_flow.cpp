@@ -17,12 +17,32 @@ namespace manoscope::validation {
 namespace {
 
 constexpr const char* kWhere = "predicted flow";
+constexpr double kMarched = 2e-5;  // of p: far below the error of any march
+constexpr int kMostMarches = 20;   // each is some ten times nearer
 
 bool marches(flow::FlowModel model) {
   return model == flow::FlowModel::plane_march || model == flow::FlowModel::section_march;
 }
 bool has_inertia(flow::FlowModel model) {
   return model != flow::FlowModel::paper && model != flow::FlowModel::creeping;
+}
+
+/// G of P = G p, P - L^2 P'' = p with P' = 0 at both ends: linear elements, lumped.
+Matrix spread_matrix(const Array1& x, Length healing_length) {
+  const Index n = x.size();
+  const double square = healing_length.si() * healing_length.si();
+  if (!(square > 0.0)) return Matrix::Identity(n, n);
+  Matrix system = Matrix::Zero(n, n), mass = Matrix::Zero(n, n);
+  for (Index i = 0; i + 1 < n; ++i) {
+    const double step = x[i + 1] - x[i];
+    for (const Index end : {i, i + 1}) {
+      mass(end, end) += 0.5 * step;
+      system(end, end) += 0.5 * step + square / step;
+    }
+    system(i, i + 1) -= square / step;
+    system(i + 1, i) -= square / step;
+  }
+  return system.partialPivLu().solve(mass);
 }
 
 class Coupling {
@@ -40,19 +60,50 @@ class Coupling {
       setup_ =
           with_tables(setup_, Length::from_si(wall_.least()), Length::from_si(wall_.greatest()));
     }
+    const Length width = setup_.channel.width;
+    spread_ =
+        spread_matrix(wall_.x(), options.healing_length.value_or(width / (2.0 * std::numbers::pi)));
   }
 
-  FlowPrediction solve(const inversion::GaugeErrors& gauge) const {
-    const Index n = wall_.size();
+  FlowPrediction solve(const inversion::GaugeErrors& gauge) {
     FlowPrediction result;
     result.model = model_;
     result.flow_rate = flow_rate_;
     result.x = wall_.x();
     result.station = wall_.station();
     Array1 p = start();
+    correction_ = Array1::Zero(wall_.size());
+    settle(p, result.steps);
+    if (marches(model_)) march_on(p, result.steps);
+    refuse_choking(p);
+    refuse_extrapolation(p);
+    finish(result, p, gauge);
+    return result;
+  }
+
+ private:
+  /// What a march adds to `momentum` changes little with the state: it is taken as it was at the
+  /// last state, until that state meets the march itself.
+  void march_on(Array1& p, int& steps) {
+    for (int k = 0; k < kMostMarches; ++k) {
+      const flow::FlowCase state = flow(p);
+      const Array1 marched = flow::pressure_along(model_, state, *setup_.tables).pressure;
+      if (!marched.isFinite().all()) unsettled(p);
+      if ((marched - p).abs().maxCoeff() <= kMarched * std::max(1.0, p.abs().maxCoeff())) return;
+      correction_ =
+          marched - flow::pressure_along(flow::FlowModel::momentum, state, *setup_.tables).pressure;
+      settle(p, steps);
+    }
+    unsettled(p);
+  }
+
+  /// Newton's method on p = m(zeta(p)) + correction.
+  void settle(Array1& p, int& steps) const {
+    const Index n = wall_.size();
     Array1 residual = p - modelled(p);
-    for (result.steps = 1;; ++result.steps) {
-      if (result.steps > options_.most_steps || !residual.isFinite().all()) unsettled(p);
+    for (int own = 1;; ++own) {
+      ++steps;
+      if (own > options_.most_steps || !residual.isFinite().all()) unsettled(p);
       const Matrix jacobian = Matrix::Identity(n, n) - coupling(p);
       const Array1 step = -jacobian.partialPivLu().solve(residual.matrix()).array();
       const double scale = std::max(1.0, p.abs().maxCoeff());
@@ -67,33 +118,32 @@ class Coupling {
       }
       p = next;
       residual = after;
-      if (share == 1.0 && step.abs().maxCoeff() <= options_.tolerance * scale) break;
+      if (share == 1.0 && step.abs().maxCoeff() <= options_.tolerance * scale) return;
     }
-    refuse_choking(p);
-    refuse_extrapolation(p);
-    finish(result, p, gauge);
-    return result;
   }
 
- private:
+  /// What the wall answers to, P.
+  Array1 felt(const Array1& p) const { return (spread_ * p.matrix()).array(); }
   flow::FlowCase flow(const Array1& p) const {
-    flow::FlowCase one = flow_case(setup_, flow_rate_, wall_.line(p));
+    flow::FlowCase one = flow_case(setup_, flow_rate_, wall_.line(felt(p)));
     one.outlet_pressure = outlet_.pressure;
     return one;
   }
+  /// The model whose derivatives are cheap: its own, or what stands in for a march.
+  flow::FlowModel local() const { return marches(model_) ? flow::FlowModel::momentum : model_; }
   Array1 modelled(const Array1& p) const {
-    return flow::pressure_along(model_, flow(p), *setup_.tables).pressure;
+    return flow::pressure_along(local(), flow(p), *setup_.tables).pressure + correction_;
   }
   Array1 slopes(const Array1& p) const {
+    const Array1 at = felt(p);
     Array1 result(p.size());
-    for (Index i = 0; i < p.size(); ++i) result[i] = wall_.slope(i, p[i]);
+    for (Index i = 0; i < p.size(); ++i) result[i] = wall_.slope(i, at[i]);
     return result;
   }
   /// dm/dzeta dzeta/dp.
   Matrix coupling(const Array1& p) const {
-    const flow::FlowModel local = marches(model_) ? flow::FlowModel::momentum : model_;
-    const Matrix by_zeta = flow::flow_sensitivity(local, flow(p), *setup_.tables).by_zeta;
-    return by_zeta * slopes(p).matrix().asDiagonal();
+    const Matrix by_zeta = flow::flow_sensitivity(local(), flow(p), *setup_.tables).by_zeta;
+    return by_zeta * slopes(p).matrix().asDiagonal() * spread_;
   }
   /// A straight fall from the pressure before the undeflected wall, inside the calibrated range.
   Array1 start() const {
@@ -112,12 +162,15 @@ class Coupling {
     const double width = setup_.channel.width.si();
     const flow::SectionFamily& family = setup_.tables->family;
     const double span = setup_.tables->step.si();
+    const Array1 at = felt(p), slope = slopes(p);
     for (Index i = 0; i < p.size(); ++i) {
-      const double zeta = wall_.zeta(i, p[i]);
-      const auto beta = [&](double at) { return family.at(Length::from_si(at)).momentum_factor; };
+      const double zeta = wall_.zeta(i, at[i]);
+      const auto beta = [&](double deflection) {
+        return family.at(Length::from_si(deflection)).momentum_factor;
+      };
       result[i] = flow::speed_index(
           beta(zeta), (beta(zeta + span) - beta(zeta - span)) / (2.0 * span * width), setup_.fluid,
-          flow_rate_, width * (setup_.channel.height.si() + zeta), width * wall_.slope(i, p[i]));
+          flow_rate_, width * (setup_.channel.height.si() + zeta), width * slope[i]);
     }
     return result;
   }
@@ -150,17 +203,18 @@ class Coupling {
                     flow_rate_.in(mL_per_min) / std::sqrt(greatest)));
   }
   void refuse_extrapolation(const Array1& p) const {
+    const Array1 at = felt(p);
     for (Index i = 0; i < p.size(); ++i) {
-      if (wall_.beyond(i, p[i]) == 0.0) continue;
+      if (wall_.beyond(i, at[i]) == 0.0) continue;
       throw InputError(
           kWhere,
           fmt::format("at {:.4g} mL/min the pressure at x = {:.4g} mm would be {:.4g} kPa, where "
                       "the calibration ends at {:.4g} kPa",
-                      flow_rate_.in(mL_per_min), wall_.x()[i] * 1e3, p[i] * 1e-3,
+                      flow_rate_.in(mL_per_min), wall_.x()[i] * 1e3, at[i] * 1e-3,
                       wall_.highest(i) * 1e-3),
-          p[i] > wall_.highest(i)
+          at[i] > wall_.highest(i)
               ? fmt::format("Calibrate to a higher pressure, or give less than about {:.3g} mL/min",
-                            flow_rate_.in(mL_per_min)*wall_.highest(i) / p[i])
+                            flow_rate_.in(mL_per_min)*wall_.highest(i) / at[i])
               : std::string("Calibrate to a lower pressure, or give a higher outlet pressure"));
     }
   }
@@ -178,15 +232,15 @@ class Coupling {
   void finish(FlowPrediction& result, const Array1& p, const inversion::GaugeErrors& gauge) const {
     const Index n = p.size();
     result.pressure = p;
-    result.zeta = wall_.line(p).zeta;
+    result.zeta = flow(p).zeta;
     result.speed_index = speed_index(p);
-    ModelledRun run = modelled_run(model_, setup_, flow_rate_, wall_.line(p));
+    const ModelledRun run = modelled_run(model_, setup_, flow_rate_, wall_.line(felt(p)));
     result.error = run.error;
     set_flags(result, p, run.sensitivity.modelled);
 
     const Array1 s = slopes(p);
     const Matrix jacobian =
-        Matrix::Identity(n, n) - run.sensitivity.by_zeta * s.matrix().asDiagonal();
+        Matrix::Identity(n, n) - run.sensitivity.by_zeta * s.matrix().asDiagonal() * spread_;
     const Eigen::PartialPivLU<Matrix> solver(jacobian);
     result.uncertainty.independent = result.zeta_uncertainty.independent = Array1::Zero(n);
     const auto add = [&](const std::string& variable, const std::string& source,
@@ -195,10 +249,10 @@ class Coupling {
       const Array1 effect =
           solver.solve(run.sensitivity.by_zeta * of_zeta.matrix() + of_model.matrix()).array();
       result.uncertainty.modes.push_back({variable, source, effect});
-      result.zeta_uncertainty.modes.push_back({variable, source, s * effect + of_zeta});
+      result.zeta_uncertainty.modes.push_back({variable, source, s * felt(effect) + of_zeta});
     };
     const Array1 none = Array1::Zero(n);
-    const Uncertainty errors = wall_.errors(p, gauge);
+    const Uncertainty errors = wall_.errors(felt(p), gauge);
     for (const ErrorMode& mode : errors.modes) add(mode.variable, mode.source, mode.effect, none);
     for (Index i = 0; i < n; ++i) {
       Array1 one = none;
@@ -232,12 +286,13 @@ class Coupling {
   void set_flags(FlowPrediction& result, const Array1& p,
                  const flow::ModelledPressure& modelled) const {
     result.flags = Flags1::Zero(p.size());
+    const Array1 at = felt(p), slope = slopes(p);
     bool doubt = false;
     for (Index i = p.size(); i-- > 0;) {
       FlagBits& flags = result.flags[i];
       if (doubt) flags |= PredictionFlag::downstream_doubt;
-      if (wall_.is_outside(i, p[i])) flags |= PredictionFlag::out_of_calibration;
-      if (wall_.slope(i, p[i]) < 0.0) flags |= PredictionFlag::falling_curve;
+      if (wall_.is_outside(i, at[i])) flags |= PredictionFlag::out_of_calibration;
+      if (slope[i] < 0.0) flags |= PredictionFlag::falling_curve;
       doubt = doubt || flags != 0;
       if (modelled.flags[i] != 0) flags |= PredictionFlag::separated;
       if (result.speed_index[i] >= 1.0) flags |= PredictionFlag::nearly_choked;
@@ -250,6 +305,8 @@ class Coupling {
   FlowRate flow_rate_;
   Outlet outlet_;
   PredictFlowOptions options_;
+  Matrix spread_;      ///< from p to what the wall answers to
+  Array1 correction_;  ///< Pa, of a march to `momentum`
 };
 
 }  // namespace
@@ -260,6 +317,9 @@ void PredictFlowOptions::validate() const {
   };
   if (!(largest_extrapolation >= 0.0)) {
     refuse("--largest-extrapolation", largest_extrapolation, "of 0 or more");
+  }
+  if (healing_length && !(*healing_length >= Length{})) {
+    refuse("--healing-length", healing_length->si(), "of 0 or more");
   }
   if (!(tolerance > 0.0)) refuse("--tolerance", tolerance, "above 0");
   if (most_steps < 1) refuse("--most-steps", most_steps, "of 1 or more");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "manoscope/calibration/constitutive_curves.hpp"
 #include "manoscope/core/profile.hpp"
 #include "manoscope/core/uncertainty.hpp"
@@ -12,6 +14,9 @@ struct PredictFlowOptions {
   /// How far p may leave the calibrated range of a station, as a share of that range, on the
   /// straight continuation of its curve.
   double largest_extrapolation = 0.1;
+  /// Over which the wall forgets a disturbance, sqrt(-b/a) of its tube law; nullopt: width/(2 pi),
+  /// half of that of a taut strip; 0: every station on its own.
+  std::optional<Length> healing_length;
   double tolerance = 1e-7;  ///< of p, as a share of the largest
   int most_steps = 60;      ///< of Newton's method
 
@@ -19,6 +24,9 @@ struct PredictFlowOptions {
   void describe(Visitor&& visit) {
     visit("largest-extrapolation", largest_extrapolation,
           "how far the pressure may leave the calibrated range, as a share of it");
+    visit("healing-length", healing_length,
+          "length over which the wall forgets a disturbance; auto: of the fitted wall, else "
+          "width/(2 pi)");
     visit("tolerance", tolerance, "change of p at which a prediction has settled, relative");
     visit("most-steps", most_steps, "most steps of Newton's method");
   }
@@ -65,20 +73,25 @@ struct FlowPrediction {
 
 /// Predicts p(x) and zeta(x) at a flow rate from the measured constitutive curves and a flow model.
 ///
-///   p = m(zeta; Q),  zeta(x) = curve of the station at p(x)
+///   p = m(zeta; Q),  zeta(x) = curve of the station at P(x),  P - L^2 P'' = p
 ///
-/// with m of flow::pressure_along() and no model of the wall. Newton's method with dm/dzeta of the
-/// model (of `momentum` for the marches), from the flow past the undeflected wall.
+/// with m of flow::pressure_along(), L the wall's healing length, P' = 0 at the ends, where the
+/// curves themselves hold what the clamped edge does; no other model of the wall. P = p wherever p
+/// is nearly straight over L; where a wall snaps through, L holds its neighbourhood together.
+/// Newton's method with dm/dzeta of the model, from the flow past the undeflected wall. For a march
+/// it is that of `momentum`, and what the march adds to it is brought up to date until p meets the
+/// march itself within 2e-5.
 ///
-/// Uncertainty, to first order: (1 - m' s) dp = m' dzeta + dm, s = d zeta/dp of the curves,
+/// Uncertainty, to first order: (1 - m' s G) dp = m' dzeta + dm, s = d zeta/dp of the curves, G
+/// from p to P,
 ///   dzeta  errors of the curves at fixed p: maps, labels, gauge and interpolation, by the same
 ///          names as in a reading of the same curves
 ///   dm     "channel height", "viscosity", "flow rate", "outlet pressure", "flow model <name>" and
 ///          its bend, "inlet profile"
 ///
-/// Validity: that of the model, and a wall that answers to the pressure at its own place, as its
-/// curves do: near the clamped ends of a tensioned wall p(x) is smoothed over w/pi, which moves
-/// zeta there by p'' (w/pi)^2 d zeta/dp but the drop hardly. Between stations zeta is straight.
+/// Validity: that of the model. Within a width of the clamped ends the wall's answer is more than
+/// one length tells: zeta there is off by some p'' L^2 d zeta/dp, the drop hardly. Between stations
+/// zeta is straight.
 ///
 /// @throws InputError where the flow chokes (models with inertia: the mean of S^2 over w/pi, which
 ///         the wall's tension holds together, is 1 or more), saying where and below which flow rate
