@@ -87,6 +87,7 @@ std::string predictions_text(const pipeline::Predictions& predictions, bool in_s
   const flow::FlowModelInfo& model = flow::flow_model_info(predictions.flows.front().model);
   text += fmt::format("U: expanded uncertainty, k = 2. Flow model {}: {}.\n", model.name,
                       model.validity);
+  if (predictions.model != model.name) text += fmt::format("Taken: {}.\n", predictions.model);
   text += fmt::format("Pressure at the outlet: {}. {}.\n", predictions.outlet, predictions.setup);
   for (const FlowPrediction& flow : predictions.flows) text += '\n' + profile_text(flow);
   return text;

@@ -39,6 +39,17 @@ struct RunFindings {
   FlowFindings flow;
 };
 
+/// The flow model that serves all runs, and why, in words.
+struct ChosenModel {
+  flow::FlowModel model = flow::FlowModel::section_march;
+  std::string words;
+};
+
+/// The model that the options name. "auto": section-march, unless p(x) along x, over all runs
+/// together, makes another model ten times as likely; its stated error counts against a vague one.
+ChosenModel choose_model(const std::vector<RunFindings>& findings,
+                         const CompareFlowOptions& options);
+
 /// Copies findings into the flat arrays of the result file; stations without answer become NaN.
 void store_calibration(const calibration::ConstitutiveCurves& curves,
                        const experiment::Experiment& experiment,
@@ -48,8 +59,8 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
                 results::Measurement& measurement);
 /// Models at x between their stations are straight; NaN where there is no number.
 /// @param knowledge  none if flow models were not run.
-void store_flow(const std::optional<FlowKnowledge>& knowledge, const std::vector<FlowRun>& runs,
-                const std::vector<RunFindings>& findings, const CompareFlowOptions& options,
+void store_flow(const std::optional<FlowKnowledge>& knowledge, const ChosenModel& chosen,
+                const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
                 results::FlowChecks& checks);
 void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& measurement);
 

@@ -11,17 +11,33 @@
 namespace manoscope::pipeline {
 namespace {
 
-/// The stations at which models are run, and the ends of the test section among them.
-std::vector<Index> with_ends(std::vector<Index> stations, const inversion::TestSection& section) {
-  stations.push_back(section.first);
-  stations.push_back(section.last);
-  std::sort(stations.begin(), stations.end());
-  stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
-  return stations;
-}
+/// A run at the stations at which models are run, and the ends of the test section among them.
+struct ThinnedRun {
+  Profile state;
+  inversion::PressureReading reading;
+  inversion::TestSection section;
 
-Index place_of(const std::vector<Index>& stations, Index station) {
-  return std::lower_bound(stations.begin(), stations.end(), station) - stations.begin();
+  ThinnedRun(const FlowKnowledge& knowledge, const FlowRun& run,
+             const inversion::PressureReading& whole, const inversion::TestSection& whole_section) {
+    std::vector<Index> stations = knowledge.stations;
+    stations.push_back(whole_section.first);
+    stations.push_back(whole_section.last);
+    std::sort(stations.begin(), stations.end());
+    stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
+    const auto place = [&](Index station) {
+      return std::lower_bound(stations.begin(), stations.end(), station) - stations.begin();
+    };
+    state = inversion::thinned(run.profile, stations);
+    reading = inversion::thinned(whole, stations);
+    section = {place(whole_section.first), place(whole_section.last)};
+  }
+};
+
+validation::FlowSetup setup_of(const experiment::Experiment& experiment,
+                               const FlowKnowledge& knowledge, const FlowRun& run) {
+  validation::FlowSetup setup = knowledge.setup;
+  setup.inlet_spread = inlet_spread(experiment, run.flow_rate);
+  return setup;
 }
 
 /// Does one thing; keeps the reason if it cannot be done.
@@ -52,7 +68,7 @@ void take_passages(const experiment::Experiment& experiment, const FlowRun& run,
 }  // namespace
 
 void CompareFlowOptions::validate() const {
-  flow::flow_model(verdict_model);
+  if (flow_model != kAutomaticModel) flow::flow_model(flow_model);
   if (flow_stations < 20) {
     throw InputError("--flow-stations", fmt::format("is {}", flow_stations),
                      "Give a number of 20 or more");
@@ -67,55 +83,58 @@ FlowFindings compare_flow(const experiment::Experiment& experiment,
                           const CompareFlowOptions& options) {
   FlowFindings found;
   take_passages(experiment, run, found);
-  if (!knowledge) return found;
-  validation::FlowSetup setup = knowledge->setup;
-  setup.inlet_spread = inlet_spread(experiment, run.flow_rate);
-  flow::FlowModel model = flow::flow_model(options.verdict_model);
+  if (!knowledge || !section) return found;
+  found.comparison = attempt("flow models", found.failures, [&] {
+    const ThinnedRun thin(*knowledge, run, reading, *section);
+    return validation::compare_models(setup_of(experiment, *knowledge, run), run.flow_rate,
+                                      thin.state, thin.reading, thin.section,
+                                      validation::all_models(), options.models);
+  });
+  return found;
+}
+
+void apply_model(const experiment::Experiment& experiment, const FlowKnowledge& knowledge,
+                 flow::FlowModel model, const FlowRun& run,
+                 const inversion::PressureReading& reading,
+                 const std::optional<inversion::TestSection>& section,
+                 const CompareFlowOptions& options, FlowFindings& found) {
   const bool forward = run.flow_rate > FlowRate{};
   if (!forward && flow::flow_model_info(model).needs_forward_flow) {
     model = flow::FlowModel::momentum;
   }
-  if (!section) {
-    found.verdict = "no verdict: there is no test section";
-  } else {
-    const std::vector<Index> stations = with_ends(knowledge->stations, *section);
-    const Profile state = inversion::thinned(run.profile, stations);
-    const inversion::PressureReading read = inversion::thinned(reading, stations);
-    const inversion::TestSection stretch{place_of(stations, section->first),
-                                         place_of(stations, section->last)};
-    found.comparison = attempt("flow models", found.failures, [&] {
-      return validation::compare_models(setup, run.flow_rate, state, read, stretch,
-                                        validation::all_models(), options.models);
-    });
-    found.verdict = "no verdict: the flow models could not be run";
-    if (found.comparison) {
-      for (const validation::ModelAgreement& one : found.comparison->models) {
-        if (one.model == model) found.verdict = one.words;
-      }
+  const validation::FlowSetup setup = setup_of(experiment, knowledge, run);
+  found.verdict = section ? "no verdict: the flow models could not be run"
+                          : "no verdict: there is no test section";
+  if (found.comparison) {
+    for (const validation::ModelAgreement& one : found.comparison->models) {
+      if (one.model == model) found.verdict = one.words;
     }
+  }
+  if (section) {
+    const ThinnedRun thin(knowledge, run, reading, *section);
     if (forward) {
       found.flow_rate = attempt("flow rate from the deflection", found.failures, [&] {
-        return validation::infer_flow_rate(setup, model, state, read, stretch);
+        return validation::infer_flow_rate(setup, model, thin.state, thin.reading, thin.section);
       });
       found.viscosity = attempt("viscosity from the deflection", found.failures, [&] {
-        return validation::infer_viscosity(setup, model, run.flow_rate, state, read, stretch);
+        return validation::infer_viscosity(setup, model, run.flow_rate, thin.state, thin.reading,
+                                           thin.section);
       });
     }
     if (options.joint) {
       found.joint = attempt("joint p(x)", found.failures, [&] {
-        return validation::joint_pressure(setup, model, run.flow_rate, state, read, stretch);
+        return validation::joint_pressure(setup, model, run.flow_rate, thin.state, thin.reading,
+                                          thin.section);
       });
     }
   }
   found.prediction = attempt("predicted drop", found.failures, [&] {
     validation::PredictFlowOptions coupling;
-    coupling.healing_length = knowledge->healing_length;
-    return validation::predict_flow(
-        knowledge->curves, setup, model, run.flow_rate,
-        outlet_of(experiment, run.flow_rate, run.outlet_pressure, &reading), gauge_of(experiment),
-        coupling);
+    coupling.healing_length = knowledge.healing_length;
+    return validation::predict_flow(knowledge.curves, setup, model, run.flow_rate,
+                                    outlet_of(experiment, knowledge, run, reading, section),
+                                    gauge_of(experiment), coupling);
   });
-  return found;
 }
 
 }  // namespace manoscope::pipeline

@@ -43,25 +43,6 @@ std::vector<flow::PressureTerm> passage_parts(const Experiment& experiment, cons
   return parts;
 }
 
-/// The reading at the end of the channel, and how well it is known there.
-validation::Outlet continued(const inversion::PressureReading& reading, Length length,
-                             Length width) {
-  Index last = reading.x.size() - 1;
-  while (last >= 0 && !reading.answered(last)) --last;
-  if (last < 0) return {};
-  Index before = last;
-  while (before > 0 && reading.x[last] - reading.x[before] < 0.5 * width.si()) --before;
-  while (before < last && !reading.answered(before)) ++before;
-  const double own = reading.uncertainty.standard()[last];
-  if (before == last) return {Pressure::from_si(reading.pressure[last]), Pressure::from_si(own)};
-  const double slope =
-      (reading.pressure[last] - reading.pressure[before]) / (reading.x[last] - reading.x[before]);
-  const double fall = slope * std::max(0.0, length.si() - reading.x[last]);
-  // Half of what is added is doubted: behind the last answer p may bend.
-  return {Pressure::from_si(reading.pressure[last] + fall),
-          Pressure::from_si(std::hypot(own, 0.5 * fall))};
-}
-
 /// About n of the stations inside the channel, five times as dense at its ends as in the middle:
 /// there the wall rises within a length like the width.
 std::vector<Index> graded_stations(const Array1& x, const flow::Channel& channel, Index n) {
@@ -215,13 +196,9 @@ std::vector<flow::PressureTerm> passages(const Experiment& experiment, FlowRate 
   return parts;
 }
 
-validation::Outlet outlet_of(const Experiment& experiment, FlowRate flow_rate,
-                             std::optional<Pressure> gauge,
-                             const inversion::PressureReading* reading) {
-  if (!gauge && !experiment.rigid.outlet) {
-    if (reading == nullptr) return {};
-    return continued(*reading, experiment.channel.length, experiment.channel.width);
-  }
+std::optional<validation::Outlet> told_outlet(const Experiment& experiment, FlowRate flow_rate,
+                                              std::optional<Pressure> gauge) {
+  if (!gauge && !experiment.rigid.outlet) return std::nullopt;
   validation::Outlet outlet{gauge.value_or(Pressure{}), {}};
   if (!experiment.rigid.outlet) return outlet;
   const Estimate behind = flow::parasitic_estimate(
@@ -229,6 +206,38 @@ validation::Outlet outlet_of(const Experiment& experiment, FlowRate flow_rate,
       flow_uncertainty_of(experiment).viscosity / experiment.fluid.viscosity);
   outlet.pressure += Pressure::from_si(behind.value);
   outlet.uncertainty = Pressure::from_si(behind.standard_uncertainty());
+  return outlet;
+}
+
+validation::Outlet outlet_of(const Experiment& experiment, const FlowKnowledge& knowledge,
+                             const FlowRun& run, const inversion::PressureReading& reading,
+                             const std::optional<inversion::TestSection>& section) {
+  // Within a width of the outlet the profile is the end layer's, not the model's.
+  constexpr double kDoubt = 0.1;
+  if (const auto told = told_outlet(experiment, run.flow_rate, run.outlet_pressure)) return *told;
+  const Array1 bars = reading.uncertainty.standard();
+  const auto read = [&](Index ix) {
+    return validation::Outlet{Pressure::from_si(reading.pressure[ix]), Pressure::from_si(bars[ix])};
+  };
+  if (!section) {
+    for (Index ix = reading.x.size(); ix-- > 0;) {
+      if (reading.answered(ix)) return read(ix);
+    }
+    return {};
+  }
+  validation::Outlet outlet = read(section->last);
+  const validation::WallLine line =
+      validation::wall_line(run.profile, knowledge.setup.channel.length);
+  const Array1 fall =
+      flow::pressure_along(flow::FlowModel::momentum,
+                           flow_case(knowledge.setup, run.flow_rate, line), *knowledge.setup.tables)
+          .pressure;
+  for (Index i = 0; i < line.x.size(); ++i) {
+    if (line.station[static_cast<std::size_t>(i)] != section->last) continue;
+    outlet.pressure -= Pressure::from_si(fall[i]);
+    outlet.uncertainty =
+        Pressure::from_si(std::hypot(outlet.uncertainty.si(), kDoubt * std::abs(fall[i])));
+  }
   return outlet;
 }
 

@@ -8,6 +8,7 @@
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/flow/passage_losses.hpp"
 #include "manoscope/inversion/read_pressure.hpp"
+#include "manoscope/inversion/test_section.hpp"
 #include "manoscope/pipeline/stages.hpp"
 #include "manoscope/validation/flow_setup.hpp"
 #include "manoscope/validation/predict_flow.hpp"
@@ -54,12 +55,17 @@ double inlet_spread(const experiment::Experiment& experiment, FlowRate flow_rate
 std::vector<flow::PressureTerm> passages(const experiment::Experiment& experiment,
                                          FlowRate flow_rate);
 
-/// Gauge pressure at the channel's outlet: what the flow list says of the gauge behind it (0 if it
-/// says nothing) plus the drop of the outlet passage; where neither is told, the reading continued
-/// straight to x = length.
-/// @param reading  of the run, or nullptr: then 0 stands in for it.
-validation::Outlet outlet_of(const experiment::Experiment& experiment, FlowRate flow_rate,
-                             std::optional<Pressure> gauge,
-                             const inversion::PressureReading* reading);
+/// Gauge pressure at the outlet behind a passage: what the gauge there reads (0 if there is none)
+/// plus the drop of the passage. None if the experiment tells of neither.
+std::optional<validation::Outlet> told_outlet(const experiment::Experiment& experiment,
+                                              FlowRate flow_rate, std::optional<Pressure> gauge);
+
+/// Gauge pressure at the channel's outlet during a run: told_outlet(); else the reading at the end
+/// of the test section, less what `momentum` has the pressure fall from there on through the
+/// measured gap; without a test section the last reading.
+validation::Outlet outlet_of(const experiment::Experiment& experiment,
+                             const FlowKnowledge& knowledge, const FlowRun& run,
+                             const inversion::PressureReading& reading,
+                             const std::optional<inversion::TestSection>& section);
 
 }  // namespace manoscope::pipeline

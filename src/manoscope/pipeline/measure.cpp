@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -13,7 +12,7 @@
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 #include "manoscope/pipeline/checks.hpp"
-#include "manoscope/pipeline/read_run.hpp"
+#include "manoscope/pipeline/read_runs.hpp"
 #include "manoscope/pipeline/stages.hpp"
 #include "manoscope/pipeline/tube_law_findings.hpp"
 
@@ -118,21 +117,23 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   const auto& [place, reduced, levels, curves, runs, wall, no_wall, at_rest] = calibration;
   std::string no_flow;
   const auto flow = find_flow(experiment, calibration, options, no_flow);
-  std::vector<RunFindings> findings(runs.size());
-  std::atomic<int> done{0};
-  parallel_for(static_cast<Index>(findings.size()), n_threads, [&](Index r) {
-    monitor.checkpoint();
-    const auto at = static_cast<std::size_t>(r);
-    findings[at] = read_run(experiment, calibration, flow, calibration.runs[at], options);
-    monitor.report("reading p(x)",
-                   static_cast<double>(++done) / static_cast<double>(findings.size()));
-  });
+  std::vector<RunFindings> findings =
+      read_runs(experiment, calibration, flow, options, n_threads, monitor);
+  const ChosenModel chosen = choose_model(findings, options.flow);
+  if (flow) {
+    parallel_for(static_cast<Index>(findings.size()), n_threads, [&](Index r) {
+      monitor.checkpoint();
+      RunFindings& found = findings[static_cast<std::size_t>(r)];
+      apply_model(experiment, *flow, chosen.model, calibration.runs[static_cast<std::size_t>(r)],
+                  found.reading, found.section, options.flow, found.flow);
+    });
+  }
   results::Measurement measurement;
   store_provenance(experiment, reduced, options, measurement);
   measurement.reading = reading_text(wall, no_wall);
   store_calibration(curves, experiment, reduced.hydrostatic, measurement);
   store_runs(runs, findings, measurement);
-  store_flow(flow, runs, findings, options.flow, measurement);
+  store_flow(flow, chosen, runs, findings, measurement);
   measurement.flow_rate_uncertainty =
       measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
   store_map_conditions(reduced, measurement);

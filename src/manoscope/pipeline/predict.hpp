@@ -12,7 +12,7 @@
 namespace manoscope::pipeline {
 
 struct PredictOptions {
-  std::string model = "section-march";
+  std::string model = kAutomaticModel;
   std::optional<Pressure> outlet_pressure;
   std::optional<Pressure> outlet_uncertainty;
   validation::PredictFlowOptions coupling;
@@ -36,11 +36,13 @@ struct Predictions {
   std::vector<validation::FlowPrediction> flows;  ///< in the order asked
   std::string outlet;                             ///< where the outlet pressure comes from
   std::string setup;                              ///< section and inlet, in words
+  std::string model;                              ///< why that flow model, in words
 };
 
-/// Predicts flow rates from the calibration of an experiment; its flow runs serve to place the
-/// channel and, where neither outlet pressure nor outlet passage is told, for the pressure at the
-/// outlet: a straight line in Q through what was read there, with the scatter about it.
+/// Predicts flow rates from the calibration of an experiment. Its flow runs serve to place the
+/// channel, to choose the flow model (choose_model()) and, where neither outlet pressure nor outlet
+/// passage is told, for the pressure at the outlet: a straight line in Q through what outlet_of()
+/// finds in each, with the scatter about it.
 ///
 /// @throws InputError as calibrate(), know_flow() and validation::predict_flow(); for no flow rate,
 ///         or one that is not positive.

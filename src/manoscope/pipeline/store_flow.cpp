@@ -194,15 +194,15 @@ void store_fits(const std::vector<FlowRun>& runs, FlowChecks& checks) {
 
 }  // namespace
 
-void store_flow(const std::optional<FlowKnowledge>& knowledge, const std::vector<FlowRun>& runs,
-                const std::vector<RunFindings>& findings, const CompareFlowOptions& options,
+void store_flow(const std::optional<FlowKnowledge>& knowledge, const ChosenModel& chosen,
+                const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
                 results::FlowChecks& checks) {
   name_rows(findings, checks);
   const Index n_x = findings.empty() ? 0 : findings.front().reading.x.size();
   make_room(static_cast<Index>(runs.size()), n_x, checks);
   if (knowledge) {
-    checks.flow_setup = knowledge->words;
-    checks.verdict_model = options.verdict_model;
+    checks.flow_setup = knowledge->words + (chosen.words.empty() ? "" : "; model: " + chosen.words);
+    checks.verdict_model = std::string(flow::flow_model_info(chosen.model).name);
   }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const FlowFindings& found = findings[i].flow;

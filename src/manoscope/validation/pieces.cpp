@@ -44,6 +44,7 @@ ChiSquare chi_square(const Array1& difference, const Matrix& covariance, double 
   const Eigen::LDLT<Matrix> solver(regular);
   result.value = difference.matrix().dot(solver.solve(difference.matrix()));
   result.tail = numerics::chi_square_tail(result.value, result.dof);
+  result.log_likelihood = -0.5 * (result.value + solver.vectorD().array().log().sum());
   return result;
 }
 

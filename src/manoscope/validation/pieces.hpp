@@ -28,6 +28,9 @@ struct ChiSquare {
   double value = 0.0;
   double dof = 0.0;
   double tail = 1.0;
+  /// -(value + ln det V)/2, less a constant of dof: a model that is vague fits easily, and is told
+  /// apart here.
+  double log_likelihood = 0.0;
 };
 
 /// Chi-square of differences that should be 0.

@@ -31,15 +31,17 @@ Calibration calibrate(const experiment::Experiment& experiment, const MeasureOpt
 /// sqrt(-b/a) of the fitted wall, at mid-channel under the middle level; none without one.
 std::optional<Length> healing_length(const Calibration& calibration);
 
-/// Reads p(x) of one run, finds its test section, and compares it with the flow.
-/// @param flow  none if flow models are not run.
-RunFindings read_run(const experiment::Experiment& experiment, const Calibration& calibration,
-                     const std::optional<FlowKnowledge>& flow, const FlowRun& run,
-                     const MeasureOptions& options);
-
 /// The flow as models see it; none where they are switched off or, with a reason, cannot be run.
 std::optional<FlowKnowledge> find_flow(const experiment::Experiment& experiment,
                                        const Calibration& calibration,
                                        const MeasureOptions& options, std::string& reason);
+
+/// Reads p(x) of every run, finds its test section, and compares it with the flow.
+/// @param flow  none if flow models are not run.
+std::vector<RunFindings> read_runs(const experiment::Experiment& experiment,
+                                   const Calibration& calibration,
+                                   const std::optional<FlowKnowledge>& flow,
+                                   const MeasureOptions& options, int n_threads,
+                                   const Monitor& monitor);
 
 }  // namespace manoscope::pipeline

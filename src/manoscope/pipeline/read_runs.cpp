@@ -1,12 +1,14 @@
-#include "manoscope/pipeline/read_run.hpp"
+#include "manoscope/pipeline/read_runs.hpp"
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <limits>
 #include <numbers>
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/parallel.hpp"
 #include "manoscope/inversion/end_doubt.hpp"
 #include "manoscope/inversion/simultaneous_band.hpp"
 
@@ -48,50 +50,6 @@ std::optional<inversion::NonlocalWall> find_wall(const Experiment& experiment,
   const inversion::WallKnowledge known{experiment.channel.length, experiment.channel.width,
                                        *experiment.wall->thickness, experiment.wall->poisson_ratio};
   return inversion::make_nonlocal_wall(curves, known, options.nonlocal, monitor, reason);
-}
-
-}  // namespace
-
-Calibration calibrate(const Experiment& experiment, const MeasureOptions& options, int n_threads,
-                      const Monitor& monitor) {
-  monitor.report("finding the channel", 0.0);
-  Calibration found;
-  found.place = place_channel(experiment);
-  found.reduced = reduce_maps(experiment, found.place.frame, options.reduce, n_threads, monitor);
-  found.levels = make_levels(experiment, found.reduced.hydrostatic);
-  found.curves = calibration::fit_curves(found.levels, options.curves);
-  found.runs = make_runs(experiment, found.reduced.flow);
-  if (!found.runs.empty()) {
-    found.wall = find_wall(experiment, found.curves, options, monitor, found.no_wall);
-  }
-  if (found.wall && options.curves.joint_labels) {
-    // The wall says how its curves run between the levels: once more, what each label is worth.
-    found.curves = calibration::fit_curves(found.levels, options.curves, &found.wall->uniform);
-    inversion::update_offset(*found.wall, found.curves);
-  }
-  found.at_rest = inversion::tube_law_at_rest(found.curves, experiment.channel.length,
-                                              experiment.channel.width, gauge_of(experiment));
-  return found;
-}
-
-std::optional<Length> healing_length(const Calibration& calibration) {
-  // A ripple of which half is left: (2 pi L/lambda)^2 = 1.
-  if (!calibration.wall || !(calibration.wall->half_wavelength > 0.0)) return std::nullopt;
-  return Length::from_si(calibration.wall->half_wavelength / (2.0 * std::numbers::pi));
-}
-
-std::optional<FlowKnowledge> find_flow(const Experiment& experiment, const Calibration& calibration,
-                                       const MeasureOptions& options, std::string& reason) {
-  if (calibration.runs.empty() || !options.flow.flow_models) return std::nullopt;
-  try {
-    FlowKnowledge known = know_flow(experiment, calibration.reduced, calibration.curves,
-                                    calibration.runs, options.flow.flow_stations);
-    known.healing_length = healing_length(calibration);
-    return known;
-  } catch (const InputError& error) {
-    reason = fmt::format("{} {}", error.where(), error.found());
-    return std::nullopt;
-  }
 }
 
 RunFindings read_run(const Experiment& experiment, const Calibration& calibration,
@@ -147,6 +105,66 @@ RunFindings read_run(const Experiment& experiment, const Calibration& calibratio
   }
   found.flow = compare_flow(experiment, flow, run, found.reading, found.section, options.flow);
   return found;
+}
+
+}  // namespace
+
+Calibration calibrate(const Experiment& experiment, const MeasureOptions& options, int n_threads,
+                      const Monitor& monitor) {
+  monitor.report("finding the channel", 0.0);
+  Calibration found;
+  found.place = place_channel(experiment);
+  found.reduced = reduce_maps(experiment, found.place.frame, options.reduce, n_threads, monitor);
+  found.levels = make_levels(experiment, found.reduced.hydrostatic);
+  found.curves = calibration::fit_curves(found.levels, options.curves);
+  found.runs = make_runs(experiment, found.reduced.flow);
+  if (!found.runs.empty()) {
+    found.wall = find_wall(experiment, found.curves, options, monitor, found.no_wall);
+  }
+  if (found.wall && options.curves.joint_labels) {
+    // The wall says how its curves run between the levels: once more, what each label is worth.
+    found.curves = calibration::fit_curves(found.levels, options.curves, &found.wall->uniform);
+    inversion::update_offset(*found.wall, found.curves);
+  }
+  found.at_rest = inversion::tube_law_at_rest(found.curves, experiment.channel.length,
+                                              experiment.channel.width, gauge_of(experiment));
+  return found;
+}
+
+std::optional<Length> healing_length(const Calibration& calibration) {
+  // A ripple of which half is left: (2 pi L/lambda)^2 = 1.
+  if (!calibration.wall || !(calibration.wall->half_wavelength > 0.0)) return std::nullopt;
+  return Length::from_si(calibration.wall->half_wavelength / (2.0 * std::numbers::pi));
+}
+
+std::optional<FlowKnowledge> find_flow(const Experiment& experiment, const Calibration& calibration,
+                                       const MeasureOptions& options, std::string& reason) {
+  if (calibration.runs.empty() || !options.flow.flow_models) return std::nullopt;
+  try {
+    FlowKnowledge known = know_flow(experiment, calibration.reduced, calibration.curves,
+                                    calibration.runs, options.flow.flow_stations);
+    known.healing_length = healing_length(calibration);
+    return known;
+  } catch (const InputError& error) {
+    reason = fmt::format("{} {}", error.where(), error.found());
+    return std::nullopt;
+  }
+}
+
+std::vector<RunFindings> read_runs(const Experiment& experiment, const Calibration& calibration,
+                                   const std::optional<FlowKnowledge>& flow,
+                                   const MeasureOptions& options, int n_threads,
+                                   const Monitor& monitor) {
+  std::vector<RunFindings> findings(calibration.runs.size());
+  std::atomic<int> done{0};
+  parallel_for(static_cast<Index>(findings.size()), n_threads, [&](Index r) {
+    monitor.checkpoint();
+    const auto at = static_cast<std::size_t>(r);
+    findings[at] = read_run(experiment, calibration, flow, calibration.runs[at], options);
+    monitor.report("reading p(x)",
+                   static_cast<double>(++done) / static_cast<double>(findings.size()));
+  });
+  return findings;
 }
 
 }  // namespace manoscope::pipeline
