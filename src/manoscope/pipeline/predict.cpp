@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/parallel.hpp"
@@ -17,34 +18,53 @@ using experiment::Experiment;
 /// Pressure at the outlet against the flow rate: a straight line through that of the runs.
 class OutletLine {
  public:
-  OutletLine(const std::vector<FlowRun>& runs, const std::vector<validation::Outlet>& outlets)
-      : n_(static_cast<double>(runs.size())) {
-    const auto n = static_cast<Index>(runs.size());
-    Array1 Q(n), p(n), u(n);
-    for (Index r = 0; r < n; ++r) {
-      const auto at = static_cast<std::size_t>(r);
-      Q[r] = runs[at].flow_rate.si();
-      p[r] = outlets[at].pressure.si();
-      u[r] = outlets[at].uncertainty.si();
+  struct Point {
+    double flow_rate, pressure, uncertainty;  // m3/s, Pa, Pa
+  };
+  explicit OutletLine(std::vector<Point> points) : points_(std::move(points)) {
+    std::sort(points_.begin(), points_.end(),
+              [](const Point& one, const Point& other) { return one.flow_rate < other.flow_rate; });
+    const auto n = static_cast<double>(points_.size());
+    for (const Point& one : points_) {
+      mean_ += one.flow_rate / n;
+      middle_ += one.pressure / n;
     }
-    mean_ = Q.mean();
-    spread_ = (Q - mean_).square().sum();
-    middle_ = p.mean();
-    slope_ = spread_ > 0.0 ? ((Q - mean_) * p).sum() / spread_ : 0.0;
-    const double dof = n_ - (spread_ > 0.0 ? 2.0 : 1.0);
-    const double left = (p - middle_ - slope_ * (Q - mean_)).square().sum();
-    variance_ = std::max(dof > 0.0 ? left / dof : 0.0, u.square().mean());
+    double product = 0.0, left = 0.0;
+    for (const Point& one : points_) {
+      spread_ += (one.flow_rate - mean_) * (one.flow_rate - mean_);
+      product += (one.flow_rate - mean_) * one.pressure;
+    }
+    slope_ = spread_ > 0.0 ? product / spread_ : 0.0;
+    for (const Point& one : points_) left += std::pow(one.pressure - line(one.flow_rate), 2);
+    const double dof = n - (spread_ > 0.0 ? 2.0 : 1.0);
+    scatter_ = dof > 0.0 ? left / dof : 0.0;
   }
 
+  /// The scatter about the line, and what all runs may be off by together.
   validation::Outlet at(FlowRate flow_rate) const {
-    const double away = flow_rate.si() - mean_;
-    const double share = 1.0 / n_ + (spread_ > 0.0 ? away * away / spread_ : 0.0);
-    return {Pressure::from_si(middle_ + slope_ * away),
-            Pressure::from_si(std::sqrt(variance_ * share))};
+    const double Q = flow_rate.si();
+    const double away = spread_ > 0.0 ? (Q - mean_) * (Q - mean_) / spread_ : 0.0;
+    const double by_chance =
+        std::sqrt(scatter_ * (1.0 / static_cast<double>(points_.size()) + away));
+    return {Pressure::from_si(line(Q)),
+            Pressure::from_si(std::hypot(by_chance, uncertainty_near(Q)))};
   }
 
  private:
-  double n_, mean_ = 0.0, spread_ = 0.0, middle_ = 0.0, slope_ = 0.0, variance_ = 0.0;
+  double line(double Q) const { return middle_ + slope_ * (Q - mean_); }
+  /// That of the runs, straight between them and as Q beyond.
+  double uncertainty_near(double Q) const {
+    const auto above = std::find_if(points_.begin(), points_.end(),
+                                    [Q](const Point& one) { return one.flow_rate >= Q; });
+    if (above == points_.begin()) return above->uncertainty;
+    const Point& below = *(above - 1);
+    if (above == points_.end()) return below.uncertainty * Q / below.flow_rate;
+    const double share = (Q - below.flow_rate) / (above->flow_rate - below.flow_rate);
+    return (1.0 - share) * below.uncertainty + share * above->uncertainty;
+  }
+
+  std::vector<Point> points_;
+  double mean_ = 0.0, spread_ = 0.0, middle_ = 0.0, slope_ = 0.0, scatter_ = 0.0;
 };
 
 /// What predictions need of the runs: read where it is not told.
@@ -69,12 +89,14 @@ FromRuns read_what_is_missing(const Experiment& experiment, const Calibration& c
   }
   result.chosen = choose_model(findings, reading.flow);
   if (!wants_outlet || findings.empty()) return result;
-  std::vector<validation::Outlet> outlets;
+  std::vector<OutletLine::Point> points;
   for (std::size_t r = 0; r < findings.size(); ++r) {
-    outlets.push_back(outlet_of(experiment, known, calibration.runs[r], findings[r].reading,
-                                findings[r].section));
+    const FlowRun& run = calibration.runs[r];
+    const validation::Outlet outlet =
+        outlet_of(experiment, known, run, findings[r].reading, findings[r].section);
+    points.push_back({run.flow_rate.si(), outlet.pressure.si(), outlet.uncertainty.si()});
   }
-  result.outlet.emplace(calibration.runs, outlets);
+  result.outlet.emplace(std::move(points));
   return result;
 }
 
