@@ -9,6 +9,7 @@
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
 #include "summary_checks.hpp"
+#include "summary_flow.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -89,6 +90,7 @@ std::string summary_text(const results::Measurement& m) {
         "U: expanded uncertainty, k = 2. dp_e: drop read off the wall over the section. QR: the "
         "paper's eq. (4),\nno inertia or entry flow. {}\n",
         report::resistance_uncertainty_text(m));
+    text += flow_checks_text(m);
   } else {
     text +=
         fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
@@ -125,6 +127,7 @@ std::string summary_json(const results::Measurement& m, const std::filesystem::p
                     {"en_number", number(m.en_number[r])},
                     {"tube_law_b_N_m", number(m.tube_law_b[r])},
                     {"tube_law_b_uncertainty_N_m", number(m.tube_law_b_uncertainty[r])}});
+    runs.back().update(flow_checks_json(m, r));
   }
   return json{{"output", folder.string()},
               {"runs", runs},

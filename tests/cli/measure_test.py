@@ -63,6 +63,48 @@ class Measure(DemoFolder):
         self.assertNotIn("Pressure along the channel",
                          measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
 
+    def test_measure_tells_what_the_flow_models_say(self):
+        out = self.folder / "models"
+        runs = json.loads(measure(self.out / "experiment", "-o", out, "--json",
+                                  check_code=0).stdout)["runs"]
+        drops = self.drops(out)
+        self.assertEqual(len(runs), len(drops))
+        for run_, row in zip(runs, drops):
+            self.assertEqual(run_["verdict"], row["verdict"])
+            models = {model["name"]: model for model in run_["models"]}
+            march = models["section-march"]
+            for key in ("drop_Pa", "drop_uncertainty_Pa", "en_number", "p_value"):
+                column = f"section_march_model_{key}"
+                self.assertEqual(march[key], float(row[column]) if row[column] else None)
+            # Each effect is what it adds to those before it: together they are the march's drop.
+            effects = {effect["name"]: effect["drop_Pa"] for effect in run_["corrections"]}
+            self.assertAlmostEqual(sum(effects.values()), march["drop_Pa"],
+                                   delta=1e-6 * march["drop_Pa"])
+            self.assertAlmostEqual(effects["mean-gap rectangle"], models["paper"]["drop_Pa"],
+                                   delta=1e-6 * march["drop_Pa"])
+            for key in ("inferred_flow_rate_m3_s", "inferred_flow_rate_uncertainty_m3_s",
+                        "compliant_drop_Pa", "predicted_drop_Pa", "predicted_drop_uncertainty_Pa",
+                        "predicted_en_number", "friction_drag_N", "relative_friction_drag",
+                        "reduced_reynolds", "parasitic_drop_uncertainty_Pa"):
+                self.assertEqual(run_[key], float(row[key]) if row[key] else None, key)
+
+    def test_the_table_of_the_flow_model_has_the_verdict_of_every_run(self):
+        # The demo prints the same table of its own measurement.
+        table = self.done.stdout.split("By the flow model section-march\n")[1].split("tube law")[0]
+        self.assertTrue(all(len(line) <= 100 for line in table.splitlines()), table)
+        for row in self.drops(self.out):
+            [line] = [line for line in table.splitlines() if re.match(rf" *{row['run']} ", line)]
+            en, p = row["section_march_model_en_number"], row["section_march_model_p_value"]
+            word = ("no verdict" if en == "" else "differs" if float(en) > 1.0 else
+                    "agrees" if float(p) >= 0.01 else "only the drop")
+            self.assertIn(f"  {word}", line)
+            self.assertIn(f" {float(en):.2f} " if en else " - ", line)
+
+    @staticmethod
+    def drops(folder):
+        with open(folder / "drops.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
     def test_measure_tells_its_checks_and_what_to_improve_first(self):
         out = self.folder / "checks"
         done = measure(self.out / "experiment", "-o", out, check_code=0)

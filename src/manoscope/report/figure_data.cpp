@@ -18,6 +18,8 @@ double largest_magnitude(const Array1& values) {
   return largest_magnitude(Array2(values.transpose()));
 }
 
+double share_of(double part, double whole) { return whole == 0.0 ? std::nan("") : part / whole; }
+
 std::vector<Index> runs_by_flow_rate(const results::Measurement& m) {
   std::vector<Index> runs;
   for (Index run = 0; run < m.flow_rate.size(); ++run) {

@@ -12,6 +12,9 @@ namespace manoscope::report {
 double largest_magnitude(const Array2& values);
 double largest_magnitude(const Array1& values);
 
+/// part / whole; NaN of a whole that is 0 or not known.
+double share_of(double part, double whole);
+
 /// Indices of the runs by ascending flow rate (runs without one are left out).
 std::vector<Index> runs_by_flow_rate(const results::Measurement& measurement);
 

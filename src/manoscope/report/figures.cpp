@@ -35,8 +35,9 @@ std::vector<Figure> figures(const results::Measurement& measurement) {
   std::vector<Figure> list;
   for (const auto make :
        {&pressure_at_highest_flow, &pressure_at_lowest_flow, &pressure_of_all_runs, &flow_profiles,
-        &drop_agreement, &pressure_drop, &static_profiles, &profiles_overlaid, &crest_deflection,
-        &channel_place, &levels_left_out, &cross_sections, &worst_cross_section}) {
+        &drop_agreement, &flow_corrections, &pressure_drop, &wall_shear, &static_profiles,
+        &profiles_overlaid, &crest_deflection, &channel_place, &levels_left_out, &cross_sections,
+        &worst_cross_section}) {
     if (auto figure = make(measurement)) list.push_back(std::move(*figure));
   }
   return list;

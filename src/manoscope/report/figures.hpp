@@ -31,13 +31,20 @@ std::optional<Figure> pressure_drop(const results::Measurement& measurement);
 std::optional<Figure> flow_profiles(const results::Measurement& measurement);
 /// Fig. 3(a): flow profiles over static profiles, with their crossings.
 std::optional<Figure> profiles_overlaid(const results::Measurement& measurement);
-/// Fig. 3(b) or (c): pressure along the channel at the lowest or highest flow rate.
+/// Fig. 3(b) or (c): pressure along the channel at the lowest or highest flow rate, and flow models
+/// against it.
 std::optional<Figure> pressure_at_lowest_flow(const results::Measurement& measurement);
 std::optional<Figure> pressure_at_highest_flow(const results::Measurement& measurement);
 /// Pressure along the channel, all runs.
 std::optional<Figure> pressure_of_all_runs(const results::Measurement& measurement);
-/// Fig. 4: Q R against the extracted drop, and the difference in percent.
+/// Fig. 4: Q R and the drop by the verdict's model against the extracted drop, and the difference
+/// in percent.
 std::optional<Figure> drop_agreement(const results::Measurement& measurement);
+
+/// What each physical effect adds to the drop by eq. (4), and what the reading asks for.
+std::optional<Figure> flow_corrections(const results::Measurement& measurement);
+/// Wall shear and local Reynolds number along the channel.
+std::optional<Figure> wall_shear(const results::Measurement& measurement);
 
 /// Levels read on the curves of the others: error against pressure, and along the channel.
 std::optional<Figure> levels_left_out(const results::Measurement& measurement);

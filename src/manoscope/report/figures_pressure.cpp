@@ -6,6 +6,7 @@
 
 #include "manoscope/report/figure_data.hpp"
 #include "manoscope/report/figures.hpp"
+#include "manoscope/report/model_panel.hpp"
 #include "manoscope/report/plot_script.hpp"
 
 namespace manoscope::report {
@@ -114,10 +115,17 @@ void draw_linear_fit(PlotScript& script, const Measurement& m, Index run, const 
 std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure figure) {
   const ReportUnits units = report_units(m);
   const DisplayUnit unit = pressure_unit(largest_magnitude(row(m.pressure, run)));
+  const ModelsOfRun models = models_of_run(m, run);
   PlotScript script;
   script.set(common_settings());
   script.set("set key maxrows 3 width -9 font ',13'");
-  script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  if (models.found()) {
+    script.set("set key at screen 0.5,0.995 center top vertical maxrows 4 width -4");
+    script.set("set multiplot\nset lmargin at screen 0.12\nset rmargin at screen 0.87");
+    script.set("set tmargin at screen 0.875\nset bmargin at screen 0.47\nset format x ''");
+  } else {
+    script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+  }
   script.set(fmt::format("set ylabel '{{/:Italic p}} ({})' textcolor rgb '{}'", unit.name, kBlue));
   script.set(fmt::format("set y2label '{{/:Italic ζ}} ({})' textcolor rgb '{}'",
                          units.deflection.name, kRed));
@@ -141,6 +149,11 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
   script.draw(script.add_data({x, row(m.resistance_pressure, run) / unit.si}),
               fmt::format("using 1:2 with lines dt 2 lw 2 lc rgb '{}' {}", kGrey,
                           title("from {/:Italic QR} of the measured gap")));
+  if (models.found()) {
+    script.draw(script.add_data({x, thinned(models.reference) / unit.si}),
+                fmt::format("using 1:2 with lines lw 1.4 lc rgb '{}' {}",
+                            models.reference_style.colour, title(models.reference_style.words)));
+  }
   draw_linear_fit(script, m, run, units, unit);
   const Crossings crossings = crossings_of(m, run);
   if (crossings.x.size() > 0) {
@@ -151,6 +164,15 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
   }
   if (pressure.empty() && crossings.x.size() == 0) return std::nullopt;
   script.plot();
+  if (models.found()) {
+    script.set(
+        "unset y2tics\nunset y2label\nset tmargin at screen 0.4\nset bmargin at screen 0.09");
+    script.set(
+        "set key at screen 0.5,0.45 center top maxrows 1 width -2 samplen 2\nset format x '%g'");
+    script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
+    draw_differences(script, m, run, models, units);
+    script.set("unset multiplot");
+  }
   figure.title = "Pressure along the channel at " + flow_rate_label(m, run, units);
   figure.caption = fmt::format(
       "Gauge pressure p(x) at {} read off the wall (blue) with its {:.3g} % interval; circles: "
@@ -158,10 +180,11 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
       "hydraulic resistance of the measured gap gives, tied to the reading at the end of the "
       "test section; dotted: straight line through the reading. Red: deflection. The test "
       "section is shaded; a gap in the line is a station where the wall gives no answer. Near "
-      "the ends the interval may leave the frame. As fig. 3{} of Ozsun et al. (2013).",
-      flow_rate_label(m, run, units), 100.0 * m.coverage, figure.caption);
+      "the ends the interval may leave the frame.{} As fig. 3{} of Ozsun et al. (2013).",
+      flow_rate_label(m, run, units), 100.0 * m.coverage,
+      models.found() ? difference_words(models) : std::string(), figure.caption);
   figure.width = 640;
-  figure.height = 500;
+  figure.height = models.found() ? 740 : 500;
   figure.script = script.text();
   return figure;
 }

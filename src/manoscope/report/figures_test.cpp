@@ -50,7 +50,8 @@ TEST(OrderedColour, RunsFromDarkToLightAndNeverToWhite) {
 
 TEST(Figures, HoldNoTextOfTheUser) {
   auto measurement = example_measurement({.n_x = 40, .n_levels = 4, .n_runs = 2});
-  measurement.title = measurement.run[0] = measurement.map[0] = "`touch evil`";
+  measurement.title = measurement.run[0] = measurement.map[0] = measurement.flow_model[0] =
+      measurement.verdict[0] = measurement.correction[1] = "`touch evil`";
   for (const Figure& figure : figures(measurement)) {
     EXPECT_EQ(figure.script.find("evil"), std::string::npos) << figure.name;
   }

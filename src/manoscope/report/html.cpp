@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "manoscope/report/html_checks.hpp"
+#include "manoscope/report/html_flow.hpp"
 #include "manoscope/report/html_style.hpp"
 #include "manoscope/report/html_tables.hpp"
 #include "manoscope/report/html_text.hpp"
@@ -118,6 +119,8 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
       "<nav aria-label=\"Contents\"><a href=\"#summary\">Summary</a><a "
       "href=\"#warnings\">Warnings</a>";
   page += shown.empty() ? "" : "<a href=\"#figures\">Figures</a>";
+  const std::string flow = flow_part(m);
+  page += flow.empty() ? "" : "<a href=\"#flow\">Flow models</a>";
   page += m.run.empty() ? "" : "<a href=\"#budget\">Uncertainty</a>";
   const std::string checks = checks_part(m);
   page += checks.empty() ? "" : "<a href=\"#checks\">Checks</a>";
@@ -126,10 +129,11 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
       "result</a>"
       "<a href=\"#provenance\">Provenance</a></nav>\n";
   page += "<section class=\"card\" id=\"summary\">\n" + facts_list(m) + agreement_sentence(m) +
-          "</section>\n";
+          verdict_sentence(m) + "</section>\n";
   page += runs_table(m);
   page += warnings_list(m, notes);
   page += figures_part(shown);
+  page += flow;
   if (const auto budget = budget_table(m); !budget.empty()) {
     page += "<h2 id=\"budget\">Where the uncertainty comes from</h2>\n" + budget;
   }

@@ -23,15 +23,6 @@ std::string pull_text(double pull) {
   return std::abs(pull) > 3.0 ? "<span class=\"bad\">" + text + "</span>" : text;
 }
 
-/// A chance in percent, or as a power of ten where it is small; in colour where it is no chance.
-std::string chance_text(double chance, double least) {
-  if (!std::isfinite(chance)) return "–";
-  if (chance >= 1e-3) return number_text(chance, 2);
-  const std::string text =
-      chance > 0.0 ? fmt::format("10<sup>{:.0f}</sup>", std::floor(std::log10(chance))) : "0";
-  return chance < least ? "<span class=\"bad\">" + text + "</span>" : text;
-}
-
 std::string left_out_table(const Measurement& m) {
   std::string body;
   Index n = 0;

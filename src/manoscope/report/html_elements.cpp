@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "manoscope/report/html_text.hpp"
+#include "manoscope/report/number_text.hpp"
 
 namespace manoscope::report {
 
@@ -14,6 +17,14 @@ std::string row_head(std::string_view label) {
 
 std::string column_head(const std::string& content) {
   return "<th scope=\"col\">" + content + "</th>";
+}
+
+std::string chance_text(double chance, double least) {
+  if (!std::isfinite(chance)) return "–";
+  if (chance >= 1e-3) return number_text(chance, 2);
+  const std::string text =
+      chance > 0.0 ? fmt::format("10<sup>{:.0f}</sup>", std::floor(std::log10(chance))) : "0";
+  return chance < least ? "<span class=\"bad\">" + text + "</span>" : text;
 }
 
 std::string table(const std::string& caption, const std::string& head, const std::string& body,

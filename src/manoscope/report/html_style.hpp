@@ -5,9 +5,9 @@ namespace manoscope::report {
 /// Style sheet of report.html. Figures stay on white in the dark scheme too.
 inline constexpr const char* kStyle = R"(
 :root{--ink:#1c2430;--soft:#5a6675;--line:#d5dbe2;--paper:#ffffff;--ground:#f4f6f8;--accent:#00568c;
---good:#00694c;--bad:#a8320f;--share:0%;--bar:#cfe3f1;color-scheme:light dark}
+--good:#00694c;--half:#7a5300;--bad:#a8320f;--share:0%;--bar:#cfe3f1;color-scheme:light dark}
 @media (prefers-color-scheme:dark){:root{--ink:#e4e9ef;--soft:#a3afbd;--line:#3a4552;--paper:#1d242d;
---ground:#141a21;--accent:#7cc4f0;--good:#5fd1a8;--bad:#ff9b78;--bar:#24506e}}
+--ground:#141a21;--accent:#7cc4f0;--good:#5fd1a8;--half:#f0c05a;--bad:#ff9b78;--bar:#24506e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--ground);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
 main{max-width:1400px;margin:0 auto;padding:1.5rem 1.25rem 4rem}
@@ -34,6 +34,7 @@ th:first-child,td:first-child,.words{text-align:left}
 td.words{white-space:normal}
 td.share{background:linear-gradient(to left,var(--bar) var(--share),transparent 0)}
 .good{color:var(--good);font-weight:600}
+.half{color:var(--half);font-weight:600}
 .bad{color:var(--bad);font-weight:600}
 .none{color:var(--soft)}
 ul.warnings{border-left:4px solid var(--bad);background:var(--paper);margin:1rem 0;padding:.7rem 1rem .7rem 2rem;border-radius:0 8px 8px 0}

@@ -26,19 +26,6 @@ int leading_power(double value, int digits) {
   return std::stoi(text.substr(text.find('e') + 1));
 }
 
-std::string fixed(double value, int decimals) {
-  if (decimals < 0) {
-    const double step = std::pow(10.0, -decimals);
-    value = std::round(value / step) * step;
-  }
-  std::string text = fmt::format("{:.{}f}", value, std::max(decimals, 0));
-  if (text.front() == '-') {
-    const bool zero = text.find_first_not_of("-0.") == std::string::npos;
-    text = (zero ? "" : "−") + text.substr(1);
-  }
-  return text;
-}
-
 }  // namespace
 
 DisplayUnit pressure_unit(double largest) {
@@ -64,7 +51,29 @@ std::string number_text(double value, int digits) {
   if (power >= 7 || power < -4) {
     return fmt::format("{}{:.{}e}", value < 0.0 ? "−" : "", std::abs(value), digits - 1);
   }
-  return fixed(value, digits - 1 - power);
+  return fixed_text(value, digits - 1 - power);
+}
+
+std::string fixed_text(double value, int decimals) {
+  if (!std::isfinite(value)) return kMissing;
+  if (decimals < 0) {
+    const double step = std::pow(10.0, -decimals);
+    value = std::round(value / step) * step;
+  }
+  std::string text = fmt::format("{:.{}f}", value, std::max(decimals, 0));
+  if (text.front() == '-') {
+    const bool zero = text.find_first_not_of("-0.") == std::string::npos;
+    text = (zero ? "" : "−") + text.substr(1);
+  }
+  return text;
+}
+
+std::string signed_percent_text(double fraction) {
+  if (!std::isfinite(fraction)) return kMissing;
+  const double percent = 100.0 * fraction;
+  if (std::abs(percent) < 0.005) return "0 %";
+  const std::string text = fixed_text(percent, std::abs(percent) < 0.095 ? 2 : 1);
+  return (percent > 0.0 ? "+" : "") + text + " %";
 }
 
 std::string short_number_text(double value, int digits) {
@@ -80,7 +89,7 @@ std::string number_text_with_uncertainty(double value, double uncertainty) {
   if (!std::isfinite(uncertainty) || uncertainty <= 0.0) return number_text(value, 4);
   const int decimals = 1 - leading_power(uncertainty, 2);
   if (decimals > 12) return number_text(value, 4);  // far below any digit that means something
-  return fixed(value, decimals) + " ± " + fixed(uncertainty, decimals);
+  return fixed_text(value, decimals) + " ± " + fixed_text(uncertainty, decimals);
 }
 
 std::string percent_text(double fraction) {
@@ -88,7 +97,7 @@ std::string percent_text(double fraction) {
   if (fraction == 0.0) return "0 %";
   if (std::abs(fraction) < 1e-4) return "< 0.01 %";
   const int power = leading_power(100.0 * fraction, 2);
-  return fixed(100.0 * fraction, std::clamp(1 - power, 0, 2)) + " %";
+  return fixed_text(100.0 * fraction, std::clamp(1 - power, 0, 2)) + " %";
 }
 
 }  // namespace manoscope::report

@@ -23,6 +23,14 @@ DisplayUnit flow_rate_unit(double largest);  ///< nL/min, µL/min, mL/min, L/min
 /// number that does not exist, and a real minus sign.
 std::string number_text(double value, int digits);
 
+/// The number with that many digits behind the point (of a negative count, rounded before it), a
+/// real minus sign and no minus zero; "–" for a number that does not exist.
+std::string fixed_text(double value, int decimals);
+
+/// A share in percent with its sign, to a tenth of a percent, to a hundredth where it is small:
+/// "+0.2 %", "−0.03 %".
+std::string signed_percent_text(double fraction);
+
 /// The number with at most that many significant digits and no zeros behind the point: 70, 5.5.
 std::string short_number_text(double value, int digits = 4);
 

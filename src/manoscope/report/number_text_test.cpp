@@ -25,6 +25,8 @@ TEST(NumberText, ShowsWhatDoesNotExistAsADash) {
   EXPECT_EQ(number_text_with_uncertainty(1.23456, kNan), "1.235");
   EXPECT_EQ(number_text_with_uncertainty(1.23456, 0.0), "1.235");
   EXPECT_EQ(percent_text(kNan), "–");
+  EXPECT_EQ(fixed_text(kNan, 1), "–");
+  EXPECT_EQ(signed_percent_text(kNan), "–");
 }
 
 TEST(NumberText, KeepsSignificantDigits) {
@@ -38,6 +40,11 @@ TEST(NumberText, KeepsSignificantDigits) {
   EXPECT_EQ(percent_text(0.0123), "1.2 %");
   EXPECT_EQ(percent_text(1e-6), "< 0.01 %");
   EXPECT_EQ(percent_text(0.0), "0 %");
+  EXPECT_EQ(fixed_text(-417.6, 0), "−418");
+  EXPECT_EQ(fixed_text(-0.2, 0), "0");
+  EXPECT_EQ(signed_percent_text(0.0021), "+0.2 %");
+  EXPECT_EQ(signed_percent_text(-0.0003), "−0.03 %");
+  EXPECT_EQ(signed_percent_text(1e-6), "0 %");
 }
 
 TEST(NumberText, DropsZerosThatSayNothingWhereNoUncertaintyIsMeant) {

@@ -14,6 +14,8 @@ inline constexpr const char* kBlue = "#0072b2";
 inline constexpr const char* kRed = "#c8321e";
 inline constexpr const char* kGreen = "#009e73";
 inline constexpr const char* kPurple = "#a0508c";
+inline constexpr const char* kOrange = "#e69f00";
+inline constexpr const char* kSky = "#56b4e9";
 inline constexpr const char* kGrey = "#6e6e6e";
 inline constexpr const char* kPale = "#b4b4b4";
 

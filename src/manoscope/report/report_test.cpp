@@ -99,10 +99,11 @@ TEST(Report, HoldsAFigureForEachOfThePaper) {
   if (gnuplot_is_missing()) GTEST_SKIP() << "gnuplot is not installed";
   const auto files = make_report(example_measurement());
   const auto names = names_of(files);
-  for (const char* name : {"fig1d_static_profiles", "fig1ef_crest_deflection",
-                           "fig2a_pressure_drop", "fig2b_flow_profiles", "fig3a_profiles_overlaid",
-                           "fig3b_pressure_lowest_flow", "fig3c_pressure_highest_flow",
-                           "fig4_drop_agreement", "pressure_all_runs", "channel_place"}) {
+  for (const char* name :
+       {"fig1d_static_profiles", "fig1ef_crest_deflection", "fig2a_pressure_drop",
+        "fig2b_flow_profiles", "fig3a_profiles_overlaid", "fig3b_pressure_lowest_flow",
+        "fig3c_pressure_highest_flow", "fig4_drop_agreement", "pressure_all_runs", "channel_place",
+        "flow_corrections", "wall_shear"}) {
     EXPECT_TRUE(names.contains(std::string("figures/") + name + ".svg")) << name;
   }
   EXPECT_TRUE(names.contains("report.html"));

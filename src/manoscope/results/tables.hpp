@@ -20,7 +20,10 @@ std::string pressure_table(const Measurement& measurement);
 ///
 /// Columns: run, flow_rate_m3_s, reynolds, x_start_m, x_end_m, extracted_drop_Pa,
 /// extracted_drop_uncertainty_Pa, resistance_drop_Pa, resistance_drop_uncertainty_Pa,
-/// transducer_drop_Pa, parasitic_drop_Pa, en_number. Conventions as in pressure_table().
+/// transducer_drop_Pa, parasitic_drop_Pa, en_number; behind them what the flow says of the run:
+/// drops of the channel as measured and as predicted, the flow rate off the wall, friction, what
+/// each effect adds to the drop, and drop, E_n and p value by each flow model; at last the verdict
+/// in words. Conventions as in pressure_table().
 std::string drops_table(const Measurement& measurement);
 
 /// Names of the bits, joined by '|'; "" for 0. A bit without a name reads "bit_7".

@@ -18,10 +18,67 @@ TEST(Tables, HoldTheColumnsOfTheContract) {
   EXPECT_EQ(pressure_table(measurement).substr(0, pressure_table(measurement).find('\n')),
             "run,flow_rate_m3_s,x_m,pressure_Pa,pressure_uncertainty_Pa,pressure_lower_Pa,"
             "pressure_upper_Pa,deflection_m,flags");
-  EXPECT_EQ(drops_table(measurement).substr(0, drops_table(measurement).find('\n')),
-            "run,flow_rate_m3_s,reynolds,x_start_m,x_end_m,extracted_drop_Pa,"
-            "extracted_drop_uncertainty_Pa,resistance_drop_Pa,resistance_drop_uncertainty_Pa,"
-            "transducer_drop_Pa,parasitic_drop_Pa,en_number");
+  // Columns may be added behind those of the contract, never before or between them.
+  const std::string contract =
+      "run,flow_rate_m3_s,reynolds,x_start_m,x_end_m,extracted_drop_Pa,"
+      "extracted_drop_uncertainty_Pa,resistance_drop_Pa,resistance_drop_uncertainty_Pa,"
+      "transducer_drop_Pa,parasitic_drop_Pa,en_number,";
+  EXPECT_EQ(drops_table(measurement).substr(0, contract.size()), contract);
+}
+
+TEST(Tables, HoldWhatTheFlowSaysOfEveryRun) {
+  auto m = test_support::example_measurement({.n_x = 30, .n_levels = 5, .n_runs = 3});
+  m.verdict[1] = "do not agree: 3 % more, \"twice\" the bar";
+  const auto table = io::parse_csv_table(drops_table(m), "drops.csv");
+  ASSERT_EQ(table.rows.size(), 3u);
+  const auto expect_column = [&](const std::string& name, const Array1& values) {
+    const auto column = table.column(name);
+    ASSERT_TRUE(column) << name;
+    for (Index run = 0; run < 3; ++run) {
+      const auto& row = table.rows[static_cast<std::size_t>(run)];
+      if (std::isnan(values(run))) {
+        EXPECT_EQ(row.cells[*column], "") << name;
+      } else {
+        EXPECT_EQ(table.cell_number(row, *column), values(run)) << name;
+      }
+    }
+  };
+  expect_column("reduced_reynolds", m.reduced_reynolds);
+  expect_column("parasitic_drop_uncertainty_Pa", m.parasitic_drop_uncertainty);
+  expect_column("compliant_drop_Pa", m.compliant_drop);  // the third run has no transducer
+  expect_column("compliant_drop_uncertainty_Pa", m.compliant_drop_uncertainty);
+  expect_column("predicted_drop_Pa", m.predicted_drop);
+  expect_column("predicted_drop_uncertainty_Pa", m.predicted_drop_uncertainty);
+  expect_column("predicted_en_number", m.predicted_en_number);
+  expect_column("inferred_flow_rate_m3_s", m.inferred_flow_rate);
+  expect_column("inferred_flow_rate_uncertainty_m3_s", m.inferred_flow_rate_uncertainty);
+  expect_column("friction_drag_N", m.friction_drag);
+  expect_column("relative_friction_drag", m.relative_friction_drag);
+  expect_column("true_section_Pa", m.correction_drop.row(1));
+  expect_column("entry_uncertainty_Pa", m.correction_uncertainty.row(3));
+  expect_column("section_march_Pa", m.correction_drop.row(4));
+  expect_column("mean_gap_rectangle_Pa", m.correction_drop.row(0));
+  expect_column("paper_model_drop_Pa", m.model_drop.row(0));
+  expect_column("momentum_model_en_number", m.model_en_number.row(2));
+  expect_column("section_march_model_drop_uncertainty_Pa", m.model_drop_uncertainty.row(3));
+  expect_column("section_march_model_p_value", m.model_p_value.row(3));
+  const auto verdict = table.column("verdict").value();
+  for (std::size_t run = 0; run < 3; ++run) {
+    EXPECT_EQ(table.rows[run].cells[verdict], m.verdict[run]);
+  }
+  EXPECT_NE(drops_table(m).find("\"do not agree: 3 % more, \"\"twice\"\" the bar\"\n"),
+            std::string::npos);
+}
+
+TEST(Tables, HoldNoColumnOfAModelThatWasNotRun) {
+  auto m = test_support::example_measurement({.n_x = 8, .n_levels = 3, .n_runs = 2});
+  m.flow_model.clear();
+  m.correction.clear();
+  m.verdict.clear();
+  const auto table = io::parse_csv_table(drops_table(m), "drops.csv");
+  EXPECT_FALSE(table.column("paper_model_drop_Pa"));
+  EXPECT_FALSE(table.column("true_section_Pa"));
+  EXPECT_EQ(table.rows[1].cells[table.column("verdict").value()], "");
 }
 
 TEST(Tables, ReadBackToTheSameNumbersWithEmptyCellsForMissingOnes) {
