@@ -58,7 +58,9 @@ class OutletLine {
                                     [Q](const Point& one) { return one.flow_rate >= Q; });
     if (above == points_.begin()) return above->uncertainty;
     const Point& below = *(above - 1);
-    if (above == points_.end()) return below.uncertainty * Q / below.flow_rate;
+    if (above == points_.end()) {
+      return below.uncertainty * (below.flow_rate > 0.0 ? Q / below.flow_rate : 1.0);
+    }
     const double share = (Q - below.flow_rate) / (above->flow_rate - below.flow_rate);
     return (1.0 - share) * below.uncertainty + share * above->uncertainty;
   }

@@ -30,10 +30,11 @@ inline twin::Scenario small_scenario() {
 }
 
 /// The wall of small_scenario() answers to the pressure at x alone: there are no neighbours to
-/// heed.
+/// heed. Flow models have tests of their own.
 inline MeasureOptions station_by_station() {
   MeasureOptions options;
   options.nonlocal.nonlocal = false;
+  options.flow.flow_models = false;
   return options;
 }
 
