@@ -66,18 +66,16 @@ std::string inlet_words(const Experiment& experiment) {
   const experiment::InletSection& inlet = experiment.inlet;
   const char* const profile =
       inlet.profile == flow::InletProfile::developed ? "developed" : "uniform";
-  if (inlet.spread) {
-    return fmt::format("{} where it enters, known to {:.0f} % of the way to the other profile",
-                       profile, 100.0 * *inlet.spread);
+  const char* const other =
+      inlet.profile == flow::InletProfile::developed ? "uniform" : "developed";
+  if (!inlet.spread && experiment.rigid.inlet) {
+    return fmt::format("{} where it enters, as far as rigid.inlet lets it develop", profile);
   }
-  if (experiment.rigid.inlet) {
-    return fmt::format(
-        "{} where it enters, known as far as rigid.inlet lets a uniform profile develop", profile);
-  }
-  return fmt::format(
-      "{} where it enters, known to 100 % of the way to the other profile: tell inlet.spread to "
-      "narrow that",
-      profile);
+  const double spread = inlet.spread.value_or(1.0);
+  if (spread == 0.0) return fmt::format("{} where it enters", profile);
+  return fmt::format("{} where it enters, or up to {:.0f} % of the way to {}{}", profile,
+                     100.0 * spread, other,
+                     inlet.spread ? "" : " (inlet.spread would narrow that)");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
 #include <tuple>
 
 #include "manoscope/core/flags.hpp"
@@ -31,35 +32,38 @@ bool same_bytes(const Array2& a, const Array2& b) {
 /// Every array of the result, and its words.
 void expect_same_bytes(const Measurement& a, const Measurement& b) {
   using M = Measurement;
-  for (auto member : {&M::x,
-                      &M::level_pressure,
-                      &M::level_pressure_uncertainty,
-                      &M::crest_deflection,
-                      &M::crest_deflection_uncertainty,
-                      &M::flow_rate,
-                      &M::crossing_x,
-                      &M::crossing_x_uncertainty,
-                      &M::crossing_pressure,
-                      &M::extracted_drop,
-                      &M::extracted_drop_uncertainty,
-                      &M::resistance_drop,
-                      &M::resistance_drop_uncertainty,
-                      &M::channel_resistance_drop,
-                      &M::reynolds,
-                      &M::transducer_drop,
-                      &M::parasitic_drop,
-                      &M::en_number,
-                      &M::map_tilt_x,
-                      &M::map_tilt_z,
-                      &M::map_noise,
-                      &M::map_missing,
-                      &M::map_spikes}) {
+  for (Array1 M::*member : std::initializer_list<Array1 M::*>{&M::x,
+                                                              &M::level_pressure,
+                                                              &M::level_pressure_uncertainty,
+                                                              &M::crest_deflection,
+                                                              &M::crest_deflection_uncertainty,
+                                                              &M::flow_rate,
+                                                              &M::crossing_x,
+                                                              &M::crossing_x_uncertainty,
+                                                              &M::crossing_pressure,
+                                                              &M::extracted_drop,
+                                                              &M::extracted_drop_uncertainty,
+                                                              &M::resistance_drop,
+                                                              &M::resistance_drop_uncertainty,
+                                                              &M::channel_resistance_drop,
+                                                              &M::predicted_drop,
+                                                              &M::inferred_flow_rate,
+                                                              &M::reynolds,
+                                                              &M::transducer_drop,
+                                                              &M::parasitic_drop,
+                                                              &M::en_number,
+                                                              &M::map_tilt_x,
+                                                              &M::map_tilt_z,
+                                                              &M::map_noise,
+                                                              &M::map_missing,
+                                                              &M::map_spikes}) {
     EXPECT_TRUE(same_bytes(a.*member, b.*member));
   }
-  for (auto member :
-       {&M::static_deflection, &M::static_deflection_uncertainty, &M::deflection,
-        &M::deflection_uncertainty, &M::pressure, &M::pressure_uncertainty, &M::pressure_lower,
-        &M::pressure_upper, &M::test_section, &M::resistance_pressure}) {
+  for (Array2 M::*member : std::initializer_list<Array2 M::*>{
+           &M::static_deflection, &M::static_deflection_uncertainty, &M::deflection,
+           &M::deflection_uncertainty, &M::pressure, &M::pressure_uncertainty, &M::pressure_lower,
+           &M::pressure_upper, &M::test_section, &M::resistance_pressure, &M::model_drop,
+           &M::correction_drop, &M::predicted_pressure}) {
     EXPECT_TRUE(same_bytes(a.*member, b.*member));
   }
   ASSERT_EQ(a.pressure_covariance.size(), b.pressure_covariance.size());

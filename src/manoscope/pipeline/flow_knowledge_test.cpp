@@ -1,0 +1,123 @@
+#include "manoscope/pipeline/flow_knowledge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::pipeline {
+namespace {
+
+const flow::Channel kChannel{15.5 * mm, 1.7 * mm, 175.0 * um};
+
+/// A picture of a wall whose section is `shape(s)`, the same at every x, on a rim at rest.
+template <class Shape>
+maps::ResponsePicture picture(Index n_across, Shape shape) {
+  maps::ResponsePicture picture;
+  picture.x = Array1::LinSpaced(60, -0.4e-3, 15.9e-3);
+  picture.z = Array1::LinSpaced(n_across, -1.25e-3, 1.25e-3);
+  picture.height = Array2::Zero(n_across, 60);
+  for (Index iz = 0; iz < n_across; ++iz) {
+    const double s = picture.z[iz] / 0.85e-3;
+    if (std::abs(s) < 1.0) picture.height.row(iz).setConstant(shape(s));
+  }
+  return picture;
+}
+
+experiment::Experiment channel_of_s1() {
+  experiment::Experiment experiment;
+  experiment.channel.length = kChannel.length;
+  experiment.channel.width = kChannel.width;
+  experiment.channel.height = kChannel.height;
+  experiment.fluid.viscosity = 1.0 * mPa_s;
+  experiment.fluid.density = 998.0 * kg_per_m3;
+  return experiment;
+}
+
+experiment::Passage duct(Length length) { return {length, 1.7 * mm, 175.0 * um, {}}; }
+
+TEST(ShapeAcross, IsThatOfTheWall) {
+  const auto membrane =
+      shape_across(picture(60, [](double s) { return 4e-6 * (1.0 - s * s); }), kChannel);
+  const auto strip = shape_across(
+      picture(60, [](double s) { return -4e-6 * (1.0 - s * s) * (1.0 - s * s); }), kChannel);
+  ASSERT_TRUE(membrane && strip);
+  // Both lie in the space of the fit: round-off.
+  EXPECT_NEAR(membrane->crest(), 1.5, 1e-9);
+  EXPECT_NEAR(strip->crest(), 1.875, 1e-9);
+}
+
+TEST(ShapeAcross, HeedsTheMiddleHalfAndLeavesOutWhatIsMissing) {
+  maps::ResponsePicture seen = picture(60, [](double s) { return 4e-6 * (1.0 - s * s); });
+  for (Index ix = 0; ix < 60; ++ix) {
+    if (seen.x[ix] < 3e-3 || seen.x[ix] > 12.5e-3) seen.height.col(ix).setConstant(7.0);
+    if (ix % 3 == 0) seen.height.col(ix).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  const auto shape = shape_across(seen, kChannel);
+  ASSERT_TRUE(shape);
+  EXPECT_NEAR(shape->crest(), 1.5, 1e-9);
+}
+
+TEST(ShapeAcross, IsNoneWhereTheMapsDoNotShowIt) {
+  EXPECT_FALSE(shape_across(maps::ResponsePicture{}, kChannel));
+  EXPECT_FALSE(shape_across(picture(6, [](double s) { return 1.0 - s * s; }), kChannel));
+  // A wall that tilts: its mean says nothing of its shape.
+  EXPECT_FALSE(shape_across(picture(60, [](double s) { return s * (1.0 - s * s); }), kChannel));
+}
+
+TEST(InletSpread, IsWhatTheExperimentSaysElseWhatAPassageLeaves) {
+  experiment::Experiment experiment = channel_of_s1();
+  EXPECT_EQ(inlet_spread(experiment, 70.0 * mL_per_min), 1.0);
+  experiment.rigid.inlet = duct(50.0 * mm);
+  // x+ = 1.8, where K still lacks some thousandths.
+  EXPECT_LT(inlet_spread(experiment, 5.0 * mL_per_min), 3e-3);
+  experiment.rigid.inlet = duct(2.0 * mm);
+  const double slow = inlet_spread(experiment, 20.0 * mL_per_min);
+  const double fast = inlet_spread(experiment, 70.0 * mL_per_min);
+  EXPECT_GT(fast, 2.0 * slow);
+  // x+ = x/(Dh Re) = 0.0051 with Re = 1244: by the correlation K = 0.67 of 0.84.
+  EXPECT_NEAR(fast, 0.20, 0.02);
+  experiment.inlet.spread = 0.25;
+  EXPECT_EQ(inlet_spread(experiment, 70.0 * mL_per_min), 0.25);
+}
+
+TEST(Passages, AreNamedAndASimulationTakesTheirPlace) {
+  experiment::Experiment experiment = channel_of_s1();
+  EXPECT_TRUE(passages(experiment, 20.0 * mL_per_min).empty());
+  experiment.rigid.inlet = duct(5.0 * mm);
+  experiment.rigid.outlet = duct(10.0 * mm);
+  experiment.rigid.outlet->fittings.into_reservoir = true;
+  const auto parts = passages(experiment, 20.0 * mL_per_min);
+  ASSERT_GE(parts.size(), 3u);
+  EXPECT_EQ(parts[0].name, "inlet, duct");
+  EXPECT_EQ(parts[1].name, "outlet, duct");
+  EXPECT_NEAR(parts[1].drop / parts[0].drop, 2.0, 1e-12);
+  EXPECT_EQ(parts[2].name, "outlet, expansion");
+  // Without forward flow the ducts alone have a formula.
+  const auto backwards = passages(experiment, -20.0 * mL_per_min);
+  ASSERT_EQ(backwards.size(), 2u);
+  EXPECT_NEAR(backwards[0].drop.si(), -parts[0].drop.si(), 1e-9 * parts[0].drop.si());
+
+  experiment.rigid.simulated = {{10.0 * mL_per_min, 100.0 * Pa, 1.0 * Pa},
+                                {40.0 * mL_per_min, 1000.0 * Pa, 5.0 * Pa}};
+  const auto simulated = passages(experiment, 20.0 * mL_per_min);
+  ASSERT_EQ(simulated.size(), 1u);
+  EXPECT_NEAR(simulated[0].drop.si(), 300.0, 1e-9);  // 5 Q + 0.5 Q^2 through both
+  EXPECT_THROW(passages(experiment, 50.0 * mL_per_min), InputError);
+}
+
+TEST(ToldOutlet, IsTheGaugeAndThePassageBeforeIt) {
+  experiment::Experiment experiment = channel_of_s1();
+  const FlowRate Q = 20.0 * mL_per_min;
+  EXPECT_FALSE(told_outlet(experiment, Q, std::nullopt));
+  EXPECT_EQ(told_outlet(experiment, Q, 300.0 * Pa)->pressure.si(), 300.0);
+  experiment.rigid.outlet = duct(5.0 * mm);
+  const double passage = passages(experiment, Q)[0].drop.si();
+  EXPECT_NEAR(told_outlet(experiment, Q, 300.0 * Pa)->pressure.si(), 300.0 + passage, 1e-9);
+  EXPECT_NEAR(told_outlet(experiment, Q, std::nullopt)->pressure.si(), passage, 1e-9);
+}
+
+}  // namespace
+}  // namespace manoscope::pipeline
