@@ -22,7 +22,8 @@ namespace manoscope::twin {
 ///   [flow]         flow_rates = ["5 mL/min", ...]; outlet_pressure, tubing_resistance
 ///   [rigid]        inlet, outlet = {length, width, height}
 ///   [camera]       the options of InterferometerOptions; flow, outward as in experiment.toml
-///   [gauge] [pump] [solver]   the options of GaugeOptions, PumpOptions, CoupledOptions
+///   [gauge] [pump] [solver]   the options of GaugeOptions, PumpOptions, CoupledOptions, such as
+///                             flow_model = "rectangle" | "section-march" | ...
 ///
 /// Names before a semicolon are required. Dimensional values are texts with their unit; options
 /// left out keep their defaults.
