@@ -317,6 +317,7 @@ Scenario demo_scenario() {
   scenario.flow_rates = {5.0 * mL_per_min, 20.0 * mL_per_min, 40.0 * mL_per_min, 70.0 * mL_per_min};
   scenario.camera = resized(scenario.camera, "512x96");
   scenario.wall_grid = {20, 8};
+  scenario.solver.flow_model = flow::flow_model_info(flow::FlowModel::section_march).name;
   return scenario;
 }
 

@@ -68,7 +68,8 @@ Scenario find_scenario(const std::string& name_or_path);
 ScenarioDraft find_scenario_draft(const std::string& name_or_path);
 
 /// The shipped S1 in small, made in seconds: four flow rates, a camera of 512 x 96 pixels, fewer
-/// cells of the wall (deflections within 1e-3 of those of S1).
+/// cells of the wall (deflections within 1e-3 of those of S1); its flow is marched on the bulged
+/// section ("section-march"), as a real one is.
 Scenario demo_scenario();
 
 }  // namespace manoscope::twin
