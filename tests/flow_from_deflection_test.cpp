@@ -25,7 +25,11 @@ class TwinFlow : public ::testing::Test {
     return once;
   }
   static const twin::Scenario& scenario() {
-    static const twin::Scenario demo = twin::demo_scenario();
+    static const twin::Scenario demo = [] {
+      twin::Scenario made = twin::demo_scenario();
+      made.solver.flow_model = "rectangle";
+      return made;
+    }();
     return demo;
   }
 

@@ -368,7 +368,7 @@ TEST(Measure, TellsEveryOptionAndEveryInput) {
     EXPECT_NE(("\n" + m.settings).find("\n" + line), std::string::npos) << line;
     ++n_options;
   });
-  EXPECT_EQ(n_options, 22);
+  EXPECT_EQ(n_options, 29);
   for (const char* line :
        {"coverage = 0.68\n", "section-start = 0.002 m\n", "section-end = auto\n"}) {
     EXPECT_NE(m.settings.find(line), std::string::npos) << line << m.settings;

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "manoscope/core/error.hpp"
-#include "manoscope/flow/duct_resistance.hpp"
+#include "manoscope/twin/modelled_flow.hpp"
+#include "manoscope/twin/momentum_equation.hpp"
 #include "manoscope/wall/clamped_wall.hpp"
 
 namespace manoscope::twin {
@@ -20,13 +22,17 @@ constexpr const char* kMendChoking =
     "Lower the flow rate, raise the outlet pressure, or take a stiffer wall: at S^2 = 1 the flow "
     "is "
     "as fast as the waves of the wall, and no steady flow exists beyond";
+constexpr const char* kMendSeparation =
+    "Lower the flow rate, choose flow_model = \"momentum\" or \"rectangle\", or take a wall that "
+    "rises less steeply";
 /// Largest relative change of the drop between n/2 and n steps; the error of n steps is a
 /// fifteenth.
 constexpr double kMostChange = 1e-3;
-constexpr double kSettled = 1e-9;      // largest residual of p, of the drop
-constexpr int kMostIterations = 20;    // of Newton's method at one flow rate
-constexpr int kMostHalvings = 6;       // of one Newton step
-constexpr double kNearlyChoked = 0.7;  // S^2 of the last flow found where no further one is
+constexpr double kSettled = 1e-9;       // largest residual of p, of the drop
+constexpr double kModelSettled = 1e-5;  // the same of a flow model
+constexpr int kMostIterations = 20;     // of Newton's method at one flow rate
+constexpr int kMostHalvings = 6;        // of one Newton step
+constexpr double kNearlyChoked = 0.7;   // S^2 of the last flow found where no further one is
 constexpr int kAcross = 15;  // points across at which contact with the floor is looked for
 constexpr double kShortest = 1.0 / 64;  // of the way from the start to the flow rate asked for
 /// The wall is loaded at so many even cells, p between the nodes by cubics: what p of the paper's
@@ -37,84 +43,14 @@ constexpr Index kLoadCells = 3840;
 /// where the clamped wall rises within tens of micrometres.
 constexpr double kGrading = 0.9;
 
-/// Integral over s from each of n + 1 even nodes in [0, 1] to the last, as a matrix on the nodal
-/// values: cubics through four nodes, fourth order.
-Matrix integral_to_end(Index n) {
-  const double step = 1.0 / static_cast<double>(n);
-  Matrix integral = Matrix::Zero(n + 1, n + 1);
-  for (Index i = n - 1; i >= 0; --i) {
-    integral.row(i) = integral.row(i + 1);
-    const auto add = [&](Index j, double weight) { integral(i, j) += step / 24.0 * weight; };
-    if (i == 0) {
-      add(0, 9.0), add(1, 19.0), add(2, -5.0), add(3, 1.0);
-    } else if (i == n - 1) {
-      add(n, 9.0), add(n - 1, 19.0), add(n - 2, -5.0), add(n - 3, 1.0);
-    } else {
-      add(i - 1, -1.0), add(i, 13.0), add(i + 1, 13.0), add(i + 2, -1.0);
-    }
-  }
-  return integral;
+/// The rectangle that a flow is coupled with, or that steers the solution of a flow model.
+Rectangle rectangle_of(const CoupledOptions& options) {
+  const std::optional<flow::FlowModel> model = options.model();
+  const bool exact = model ? *model != flow::FlowModel::paper : options.exact_duct;
+  const bool creeps = model == flow::FlowModel::paper || model == flow::FlowModel::creeping;
+  return {exact ? flow::DuctFormula::series : flow::DuctFormula::wide_duct,
+          creeps ? 0.0 : options.momentum_factor};
 }
-
-/// S^2 along a channel: the largest and where it is, m.
-struct Choking {
-  double square = 0.0, at = 0.0;
-};
-
-/// The equation of p at the nodes.
-class MomentumEquation {
- public:
-  MomentumEquation(const flow::Channel& channel, const flow::Fluid& fluid,
-                   const CoupledOptions& options)
-      : channel_(channel),
-        fluid_(fluid),
-        formula_(options.exact_duct ? flow::DuctFormula::series : flow::DuctFormula::wide_duct),
-        x_(ChannelCurve::nodes(channel.length, options.steps, kGrading)),
-        integral_(
-            integral_to_end(options.steps) *
-            ChannelCurve::stretch(channel.length, options.steps, kGrading).matrix().asDiagonal()),
-        flux_(options.momentum_factor * fluid.density.si()) {}
-
-  const Array1& x() const { return x_; }
-
-  /// What p should be where the wall stands at zeta: (n).
-  Array1 pressure(double flow_rate, double outlet, const Array1& zeta) const {
-    const Array1 gap = channel_.height.si() + zeta, area = channel_.width.si() * gap;
-    const Array1 friction =
-        flow_rate * flow::duct_resistance(fluid_.viscosity, channel_.width, gap, formula_);
-    const Array1 head = 0.5 * flux_ * flow_rate * flow_rate / area.square();
-    return outlet + (integral_ * friction.matrix()).array() + head(head.size() - 1) - head;
-  }
-  /// Its derivative: (n, n), Pa/m.
-  Matrix slope(double flow_rate, const Array1& zeta) const {
-    const Array1 gap = channel_.height.si() + zeta, area = channel_.width.si() * gap;
-    const Array1 friction =
-        flow_rate * flow::duct_resistance_slope(fluid_.viscosity, channel_.width, gap, formula_);
-    const Array1 head =
-        flux_ * flow_rate * flow_rate * channel_.width.si() / (area.square() * area);
-    const Index last = head.size() - 1;
-    Matrix slope = integral_ * friction.matrix().asDiagonal();
-    slope.diagonal() += head.matrix();
-    slope.col(last).array() -= head(last);
-    return slope;
-  }
-  Choking choking(double flow_rate, const Array1& zeta, const Array1& compliance) const {
-    const Array1 area = channel_.width.si() * (channel_.height.si() + zeta);
-    const Array1 square =
-        flux_ * flow_rate * flow_rate * channel_.width.si() * compliance / (area.square() * area);
-    Index at = 0;
-    const double largest = square.maxCoeff(&at);
-    return {largest, x_(at)};
-  }
-
- private:
-  flow::Channel channel_;
-  flow::Fluid fluid_;
-  flow::DuctFormula formula_;
-  Array1 x_;
-  Matrix integral_;
-  double flux_;  ///< beta rho, kg/m^3
-};
 
 /// A place on the wall, m.
 struct Place {
@@ -159,18 +95,41 @@ WallAtRest load_wall(const WallModel& wall, const WallAtRest& from, const Channe
   return wall.load(from, x, pressure(x));
 }
 
+/// Refuses a flow that half the steps would move.
+/// @param inlet, rough  its pressure at x = 0, and with half the steps, Pa.
+void check_resolution(FlowRate flow_rate, double outlet, double inlet, double rough, Index steps) {
+  const double drop = std::abs(inlet - outlet);
+  const double change = std::isfinite(rough) ? std::abs(inlet - rough) : drop;
+  if (change <= kMostChange * drop) return;
+  throw InputError(kWhere,
+                   fmt::format("{} steps do not resolve the flow at {:.3g} mL/min: half of them "
+                               "move the drop of {:.4g} Pa by {:.3g} Pa",
+                               steps, flow_rate.in(mL_per_min), drop, change),
+                   "Raise the number of steps, or widen a channel that is nearly closed");
+}
+
 /// A flow that Newton's method has in hand.
 struct Iterate {
   Array1 pressure;
   WallAtRest wall;
   Array1 zeta, residual;
+  std::optional<Index> separated{};  ///< the first node where the flow of a model does
 };
 
 class Solver {
  public:
   Solver(const flow::Channel& channel, const flow::Fluid& fluid, const WallModel& wall,
          const CoupledOptions& options, const Monitor& monitor)
-      : channel_(channel), wall_(wall), equation_(channel, fluid, options), monitor_(monitor) {}
+      : channel_(channel),
+        wall_(wall),
+        equation_(channel, fluid, rectangle_of(options), options.steps, kGrading),
+        monitor_(monitor) {}
+
+  /// From now on p is to be what a flow model says at the nodes; the rectangle still steers.
+  void obey(ModelledFlow model) {
+    model_ = std::move(model);
+    settled_ = kModelSettled;
+  }
 
   /// The flow near a start; none where Newton's method does not reach one.
   std::optional<Iterate> solve(double flow_rate, double outlet, const Array1& pressure,
@@ -180,7 +139,7 @@ class Solver {
       monitor_.checkpoint();
       const double largest = now->residual.abs().maxCoeff();
       const double drop = std::abs(now->pressure(0) - outlet);
-      if (largest <= kSettled * drop || largest == 0.0) return now;
+      if (largest <= settled_ * drop || largest == 0.0) return now;
       const Matrix influence = now->wall.influence(equation_.x());
       const Index size = influence.rows();
       const Matrix tangent =
@@ -195,7 +154,7 @@ class Solver {
         next.reset();
       }
       // Round-off of the wall's own solution ends the descent a little above kSettled.
-      if (!next && largest <= 100.0 * kSettled * drop) return now;
+      if (!next && !model_ && largest <= 100.0 * kSettled * drop) return now;
       now = std::move(next);
     }
     return std::nullopt;
@@ -204,14 +163,31 @@ class Solver {
   CoupledFlow finished(double flow_rate, Iterate flow) const {
     const Choking choking = choking_of(flow_rate, flow);
     if (choking.square >= 1.0) refuse_choking(flow_rate, choking);
-    return {FlowRate::from_si(flow_rate), ChannelCurve(channel_.length, flow.pressure, kGrading),
-            ChannelCurve(channel_.length, flow.zeta, kGrading), std::move(flow.wall),
-            std::sqrt(std::max(choking.square, 0.0))};
+    return {FlowRate::from_si(flow_rate),
+            ChannelCurve(channel_.length, flow.pressure, kGrading),
+            ChannelCurve(channel_.length, flow.zeta, kGrading),
+            std::move(flow.wall),
+            std::sqrt(std::max(choking.square, 0.0)),
+            model_ ? model_->shape() : flow::WallShape::parabola()};
+  }
+
+  /// The flow of the model near that of the rectangle at the same flow rate.
+  CoupledFlow modelled(const CoupledFlow& rectangle) {
+    const double flow_rate = rectangle.flow_rate.si(), outlet = rectangle.outlet().si();
+    auto found = solve(flow_rate, outlet, rectangle.pressure.values(), rectangle.wall);
+    if (!found) refuse(flow_rate, outlet, flow_rate, {});
+    if (found->separated) refuse_separation(*found->separated, rectangle.flow_rate);
+    const double coarse = model_->coarse_pressure(found->zeta, outlet).pressure(0);
+    check_resolution(rectangle.flow_rate, outlet, found->pressure(0), coarse, x().size() - 1);
+    return finished(flow_rate, *std::move(found));
   }
 
   /// Says why there is no flow beyond the last one that was found.
   [[noreturn]] void refuse(double flow_rate, double outlet, double last_flow_rate,
                            const std::optional<Iterate>& last) const {
+    // First: behind a separation a model says anything, and the wall is loaded with it.
+    if (separated_) refuse_separation(*separated_, FlowRate::from_si(flow_rate));
+    if (breaks_down_) refuse_breakdown(FlowRate::from_si(flow_rate));
     if (contact_) refuse_contact(*contact_, outlet, FlowRate::from_si(flow_rate));
     if (beyond_) refuse_rise(wall_, *beyond_, FlowRate::from_si(flow_rate));
     const Choking choking = last ? choking_of(last_flow_rate, *last) : Choking{};
@@ -256,8 +232,36 @@ class Solver {
     contact_ = contact(channel_, made.wall, equation_.x());
     if (contact_) return std::nullopt;
     made.zeta = made.wall.deflection(equation_.x());
-    made.residual = pressure - equation_.pressure(flow_rate, outlet, made.zeta);
+    if (!model_) {
+      made.residual = pressure - equation_.pressure(flow_rate, outlet, made.zeta);
+      return made;
+    }
+    const flow::ModelledPressure said = model_->pressure(made.zeta, outlet);
+    made.separated = separated_ = said.first_separated;
+    breaks_down_ = !said.pressure.isFinite().all();
+    if (breaks_down_) return std::nullopt;
+    made.residual = pressure - said.pressure;
     return made;
+  }
+
+  std::string model_name() const {
+    return std::string(flow::flow_model_info(model_->model()).name);
+  }
+
+  [[noreturn]] void refuse_breakdown(FlowRate flow_rate) const {
+    throw InputError(kWhere,
+                     fmt::format("the flow model \"{}\" breaks down at {:.4g} mL/min", model_name(),
+                                 flow_rate.in(mL_per_min)),
+                     kMendSeparation);
+  }
+
+  [[noreturn]] void refuse_separation(Index node, FlowRate flow_rate) const {
+    throw InputError(
+        kWhere,
+        fmt::format("the flow separates from the wall at x = {:.4g} mm, {:.4g} mL/min: \"{}\" has "
+                    "no answer downstream",
+                    x()(node) * 1e3, flow_rate.in(mL_per_min), model_name()),
+        kMendSeparation);
   }
 
   Choking choking_of(double flow_rate, const Iterate& flow) const {
@@ -275,10 +279,15 @@ class Solver {
   flow::Channel channel_;
   const WallModel& wall_;
   MomentumEquation equation_;
+  std::optional<ModelledFlow> model_;  ///< what p is to meet; none: equation_
+  double settled_ = kSettled;          ///< largest residual of p, of the drop
   const Monitor& monitor_;
   // Of the last wall that was tried:
   std::optional<Place> contact_;  ///< where it touched the floor
   std::optional<double> beyond_;  ///< pressure under which its law does not hold, Pa
+  // Of the last wall that the model was asked about:
+  std::optional<Index> separated_;  ///< node where the flow separates first
+  bool breaks_down_ = false;        ///< it has no pressure
 };
 
 void check_inputs(const flow::Channel& channel, const WallModel& wall, FlowRate flow_rate,
@@ -328,17 +337,6 @@ CoupledFlow go_to(Solver& solver, const CoupledFlow& start, double flow_rate, do
 
 }  // namespace
 
-void CoupledOptions::validate() const {
-  if (steps < 10 || steps > 2000 || steps % 2 != 0) {
-    throw InputError(kWhere, fmt::format("steps is {}", steps),
-                     "Choose an even number from 10 to 2000");
-  }
-  if (!(momentum_factor >= 0.0 && momentum_factor <= 2.0)) {
-    throw InputError(kWhere, fmt::format("momentum_factor is {:g}", momentum_factor),
-                     "Choose 0 (creeping flow) or 1 (flat profile) to 2; a parabola has 1.2");
-  }
-}
-
 CoupledFlow fill_channel(const flow::Channel& channel, const WallModel& wall,
                          const WallAtRest& from, Pressure pressure, const CoupledOptions& options) {
   options.validate();
@@ -366,19 +364,20 @@ CoupledFlow solve_coupled(const flow::Channel& channel, const flow::Fluid& fluid
   const double q = flow_rate.si(), outlet = outlet_pressure.si();
   Solver solver(channel, fluid, wall, options, monitor);
   CoupledFlow flow = go_to(solver, start, q, outlet);
+  const std::optional<flow::FlowModel> model = options.model();
+  if (model && q != 0.0) {
+    flow::FlowCase flowing{channel, fluid, flow_rate, solver.x(), {}};
+    flowing.shape = section_shape(flow.wall, channel.length, channel.width);
+    flowing.inlet = options.inlet();
+    solver.obey(ModelledFlow(*model, std::move(flowing)));
+    return solver.modelled(flow);
+  }
   CoupledOptions half = options;
   half.steps /= 2;
   Solver rough(channel, fluid, wall, half, monitor);
   const auto check = rough.solve(q, outlet, flow.pressure(rough.x()), flow.wall);
-  const double drop = std::abs((flow.inlet() - flow.outlet()).si());
-  const double change = check ? std::abs(flow.inlet().si() - check->pressure(0)) : drop;
-  if (!(change <= kMostChange * drop)) {
-    throw InputError(kWhere,
-                     fmt::format("{} steps do not resolve the flow at {:.3g} mL/min: half of them "
-                                 "move the drop of {:.4g} Pa by {:.3g} Pa",
-                                 options.steps, flow_rate.in(mL_per_min), drop, change),
-                     "Raise the number of steps, or widen a channel that is nearly closed");
-  }
+  check_resolution(flow_rate, outlet, flow.inlet().si(), check ? check->pressure(0) : std::nan(""),
+                   options.steps);
   return flow;
 }
 

@@ -57,6 +57,9 @@ class OptionReader {
   void operator()(const char* name, bool& value, const char*) {
     value = table_->boolean(name).value_or(value);
   }
+  void operator()(const char* name, std::string& value, const char*) {
+    value = table_->text(name).value_or(value);
+  }
 
  private:
   TableReader* table_;
@@ -251,7 +254,7 @@ std::string read_text(const fs::path& file) {
   const auto size = fs::file_size(file, error);
   if (!error && size > kLargest)
     refuse(fmt::format("{} MB: no scenario is that large", size >> 20));
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (stream.bad()) refuse("the file cannot be read");
   return text;
 }
@@ -314,6 +317,7 @@ Scenario demo_scenario() {
   scenario.flow_rates = {5.0 * mL_per_min, 20.0 * mL_per_min, 40.0 * mL_per_min, 70.0 * mL_per_min};
   scenario.camera = resized(scenario.camera, "512x96");
   scenario.wall_grid = {20, 8};
+  scenario.solver.flow_model = flow::flow_model_info(flow::FlowModel::section_march).name;
   return scenario;
 }
 

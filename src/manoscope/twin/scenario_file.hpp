@@ -22,7 +22,8 @@ namespace manoscope::twin {
 ///   [flow]         flow_rates = ["5 mL/min", ...]; outlet_pressure, tubing_resistance
 ///   [rigid]        inlet, outlet = {length, width, height}
 ///   [camera]       the options of InterferometerOptions; flow, outward as in experiment.toml
-///   [gauge] [pump] [solver]   the options of GaugeOptions, PumpOptions, CoupledOptions
+///   [gauge] [pump] [solver]   the options of GaugeOptions, PumpOptions, CoupledOptions, such as
+///                             flow_model = "rectangle" | "section-march" | ...
 ///
 /// Names before a semicolon are required. Dimensional values are texts with their unit; options
 /// left out keep their defaults.
@@ -67,7 +68,8 @@ Scenario find_scenario(const std::string& name_or_path);
 ScenarioDraft find_scenario_draft(const std::string& name_or_path);
 
 /// The shipped S1 in small, made in seconds: four flow rates, a camera of 512 x 96 pixels, fewer
-/// cells of the wall (deflections within 1e-3 of those of S1).
+/// cells of the wall (deflections within 1e-3 of those of S1); its flow is marched on the bulged
+/// section ("section-march"), as a real one is.
 Scenario demo_scenario();
 
 }  // namespace manoscope::twin

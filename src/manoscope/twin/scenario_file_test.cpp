@@ -113,6 +113,33 @@ TEST(ScenarioFile, RefusesWhatIsOutOfRangeAtItsKey) {
   EXPECT_TRUE(tells(faults_of("scenario = \n"), "is not TOML"));
 }
 
+TEST(ScenarioFile, TakesAFlowModelByNameAndSaysWhatDoesNotGoWithIt) {
+  const auto with = [](const std::string& solver) {
+    return std::string(kSound) + "[solver]\n" + solver;
+  };
+  const CoupledOptions options =
+      parse_scenario(with("flow_model = \"plane-march\"\ninlet_profile = \"uniform\"\n"), "a.toml")
+          .solver;
+  EXPECT_EQ(options.model(), flow::FlowModel::plane_march);
+  EXPECT_EQ(options.inlet(), flow::InletProfile::uniform);
+  EXPECT_EQ(parse_scenario(kSound, "a.toml").solver.model(), std::nullopt);
+  for (const flow::FlowModelInfo& info : flow::kFlowModels) {
+    const std::string text = with("flow_model = \"" + std::string(info.name) + "\"\n");
+    EXPECT_EQ(parse_scenario(text, "a.toml").solver.model(), info.model);
+  }
+  const std::string unknown = faults_of(with("flow_model = \"section_march\"\n"));
+  EXPECT_TRUE(tells(unknown, "mine.toml:30: solver.flow_model"));
+  EXPECT_TRUE(tells(unknown, "did you mean \"section-march\"?"));
+  EXPECT_TRUE(tells(faults_of(with("flow_model = 3\n")), "solver.flow_model"));
+  EXPECT_TRUE(tells(faults_of(with("inlet_profile = \"uniforn\"\n")), "did you mean \"uniform\"?"));
+  // What the model would not heed.
+  EXPECT_TRUE(tells(faults_of(with("inlet_profile = \"uniform\"\n")), "solver.inlet_profile"));
+  EXPECT_TRUE(tells(faults_of(with("flow_model = \"energy\"\nmomentum_factor = 1.0\n")),
+                    "solver.momentum_factor"));
+  EXPECT_TRUE(
+      tells(faults_of(with("flow_model = \"paper\"\nexact_duct = false\n")), "solver.exact_duct"));
+}
+
 TEST(ScenarioFile, ShippedOnesAreSoundAndNamedAfterTheirSample) {
   ASSERT_EQ(shipped_scenarios().size(), 6u);
   for (const ShippedScenario& shipped : shipped_scenarios()) {

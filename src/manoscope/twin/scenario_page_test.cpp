@@ -60,7 +60,9 @@ void expect_told(const std::string& start) {
       continue;
     }
     Options changed;
-    set_option(changed, option.name, found->second, "the page");
+    std::string value = found->second;
+    if (value.front() == '"') value = value.substr(1, value.size() - 2);  // a text of TOML
+    set_option(changed, option.name, value, "the page");
     const std::vector<OptionInfo> now = list_options(changed);
     for (std::size_t i = 0; i < now.size(); ++i) {
       EXPECT_EQ(now[i].value, options[i].value) << option.name << " = " << found->second;

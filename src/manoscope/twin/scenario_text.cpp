@@ -17,6 +17,7 @@ using toml_text::quoted;
 std::string text_of(double value) { return fmt::format("{:.10g}", value); }
 std::string text_of(int value) { return fmt::format("{}", value); }
 std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(const std::string& value) { return quoted(value); }
 std::string text_of(Pressure value) { return best(value); }
 std::string text_of(Length value) { return value == Length{} ? in_unit(0.0, "um") : best(value); }
 std::string text_of(Angle value) { return in_unit(value.in(1e-3 * rad), "mrad"); }

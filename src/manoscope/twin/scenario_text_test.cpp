@@ -96,7 +96,9 @@ TEST(ScenarioText, KeepsWhatNoShippedScenarioHas) {
   scenario.gauge.gain_uncertainty = 0.002;
   scenario.gauge.zero_uncertainty = 5.0 * Pa;
   scenario.pump.pulsation = 1e-3;
-  scenario.solver.exact_duct = false;
+  scenario.solver = {};
+  scenario.solver.flow_model = "section-march";
+  scenario.solver.inlet_profile = "uniform";
   const std::string text = scenario_toml(scenario, "two lines\nof comment");
   EXPECT_EQ(text.rfind("# two lines\n# of comment\nscenario = 1\n", 0), 0u);
   Scenario back = parse_scenario(text, "again.toml");

@@ -199,6 +199,10 @@ void write_truth_netcdf(const std::filesystem::path& path, const Truth& truth,
   file.put_attribute(NetcdfFile::kGlobal, "experiment_name", header.name);
   file.put_attribute(NetcdfFile::kGlobal, "inputs", header.inputs);
   file.put_attribute(NetcdfFile::kGlobal, "seed", fmt::format("{}", header.seed));
+  if (header.flow_model != TruthHeader{}.flow_model) {
+    file.put_attribute(NetcdfFile::kGlobal, "flow_model", header.flow_model);
+    file.put_attribute(NetcdfFile::kGlobal, "inlet_profile", header.inlet_profile);
+  }
   Writer writer(file);
   const int x = file.define_dimension("x", static_cast<std::size_t>(truth.x.size()));
   const int x_id = file.define_double("x", {x});

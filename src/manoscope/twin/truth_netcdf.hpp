@@ -15,12 +15,15 @@ struct TruthHeader {
   std::uint64_t seed = 0;  ///< of the errors of the instrument
   flow::Channel channel;   ///< true sizes
   std::string inputs;      ///< one "name  sha256" of a map a line, as in the result file
+  /// What the flow obeys, as CoupledOptions has it.
+  std::string flow_model = "rectangle", inlet_profile = "developed";
 };
 
 /// Writes truth.nc, atomically: NetCDF-4 with CF attributes, float64, SI, and the names of the
 /// result file where both tell of the same thing.
 ///
-/// Global attributes: Conventions, title, experiment_name, seed, inputs (as in the result file).
+/// Global attributes: Conventions, title, experiment_name, seed, inputs (as in the result file);
+/// flow_model and inlet_profile where the flow obeys another model than the rectangle.
 /// Dimensions x, run, level. Coordinates x (m), run (label), flow_rate; pressure, deflection (run,
 /// x); level_pressure (true), level_label (as the gauge read it), level_map, static_deflection
 /// and, where every level has it, static_compliance (level, x); inlet_pressure, outlet_pressure,

@@ -95,6 +95,27 @@ TEST(TruthNetcdf, EveryVariableHasUnitAndMeaning) {
   EXPECT_EQ(file.read_doubles(*file.variable("channel_height")).front(), 175e-6);
 }
 
+TEST(TruthNetcdf, NamesTheModelOfItsFlowUnlessThatIsTheRectangle) {
+  const test_support::TemporaryFolder folder;
+  VirtualExperiment made = tiny();
+  const auto told = [&](const char* name) {
+    write(folder.path() / "truth.nc", made);
+    return io::NetcdfFile::open(folder.path() / "truth.nc")
+        .text_attribute(io::NetcdfFile::kGlobal, name);
+  };
+  EXPECT_EQ(told("flow_model"), std::nullopt);
+  Scenario scenario = small_s1();
+  scenario.levels = {Pressure{}};
+  scenario.flow_rates = {5.0 * mL_per_min};
+  scenario.camera.n_along = scenario.camera.n_across = 16;
+  scenario.solver = {};
+  scenario.solver.flow_model = "plane-march";
+  scenario.solver.inlet_profile = "uniform";
+  made = make_virtual_experiment(scenario, 3);
+  EXPECT_EQ(told("flow_model"), "plane-march");
+  EXPECT_EQ(told("inlet_profile"), "uniform");
+}
+
 TEST(TruthNetcdf, AFileThatLacksSomethingIsNamed) {
   const test_support::TemporaryFolder folder;
   const auto path = folder.path() / "truth.nc";

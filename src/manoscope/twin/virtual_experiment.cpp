@@ -114,7 +114,9 @@ VirtualExperiment record_experiment(const Scenario& scenario, const SolvedScenar
   MANO_ASSERT(solved.levels.size() == scenario.levels.size());
   MANO_ASSERT(solved.runs.size() == scenario.flow_rates.size());
   VirtualExperiment experiment;
-  experiment.header = {experiment_name(scenario, seed), seed, scenario.channel, {}};
+  experiment.header = {
+      experiment_name(scenario, seed), seed, scenario.channel, {}, scenario.solver.flow_model,
+      scenario.solver.inlet_profile};
   experiment.truth.x = pixel_stations(scenario.channel, scenario.camera);
   experiment.truth.levels = read_gauge(scenario, seed);
   std::vector<Scene> scenes;

@@ -88,6 +88,27 @@ WallShape parabolic_shape(Length width, std::function<double(double)> deflection
   };
 }
 
+flow::WallShape section_shape(const WallAtRest& wall, Length length, Length width) {
+  constexpr Index kAlong = 64, kAcross = 24;
+  constexpr int kTerms = 4;
+  // The middles of even cells, along the flow and from the centre line to a side.
+  const auto middles = [](Index n) {
+    return Array1((Array1::LinSpaced(n, 0.0, static_cast<double>(n - 1)) + 0.5) /
+                  static_cast<double>(n));
+  };
+  const Array1 x = length.si() * middles(kAlong), s = middles(kAcross);
+  const Array1 mean = wall.deflection(x);
+  if (!(mean.square().sum() > 0.0)) return flow::WallShape::parabola();
+  Array1 sum = Array1::Zero(kAcross);
+  for (Index k = 0; k < kAcross; ++k) {
+    const double z = 0.5 * width.si() * s(k);
+    for (Index i = 0; i < kAlong; ++i) {
+      sum(k) += 0.5 * (wall.shape(x(i), z) + wall.shape(x(i), -z)) * mean(i);
+    }
+  }
+  return flow::WallShape::fit(s, sum / mean.square().sum(), kTerms);
+}
+
 WallModel membrane_model(const wall::TaperedMembrane& wall) {
   WallModel model;
   model.length = wall.length();

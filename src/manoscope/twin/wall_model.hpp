@@ -8,6 +8,7 @@
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/core/units.hpp"
+#include "manoscope/flow/roof.hpp"
 #include "manoscope/twin/channel_curve.hpp"
 #include "manoscope/wall/foppl_von_karman.hpp"
 #include "manoscope/wall/tapered_membrane.hpp"
@@ -60,6 +61,15 @@ struct WallModel {
 ///
 /// Source: Ozsun, Yakhot & Ekinci 2013, eq. (3), read backwards.
 WallShape parabolic_shape(Length width, std::function<double(double)> deflection);
+
+/// The shape across that the sections of a wall have on the whole: the least squares of
+///
+///   zeta(x, z) = zeta(x) g(2 z/w),  g(s) = int zeta(x, s) zeta(x) dx / int zeta(x)^2 dx
+///
+/// as an even polynomial that vanishes at the sides. Every section counts by how far it stands out,
+/// so that one where a wall passes through flat does not matter. A parabola for a flat wall.
+/// Accuracy: in the test section of a long wall; near the ends a clamped plate is pointed instead.
+flow::WallShape section_shape(const WallAtRest& wall, Length length, Length width);
 
 /// A tapered membrane with a parabolic section: it answers to the pressure at x alone.
 WallModel membrane_model(const wall::TaperedMembrane& wall);

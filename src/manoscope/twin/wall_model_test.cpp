@@ -85,5 +85,37 @@ TEST(MembraneModel, NeverSnaps) {
   EXPECT_TRUE(under(model, model.rest(), 5e3).snaps.empty());
 }
 
+TEST(SectionShape, OfAMembraneIsTheParabola) {
+  const wall::TaperedMembrane membrane(
+      3.0 * mm, {1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23, 10.0 * MPa}, {700.0 * Pa, 0.2});
+  const WallModel model = membrane_model(membrane);
+  // Bowed in here, out there, and on average hardly at all.
+  const WallAtRest state = model.load(model.rest(), Array1::LinSpaced(2, 0.0, 3e-3),
+                                      Array1::LinSpaced(2, 1200.0, 200.0));
+  const flow::WallShape shape = section_shape(state, 3.0 * mm, 1.7 * mm);
+  for (const double s : {0.0, 0.3, 0.7, 1.0}) {
+    EXPECT_NEAR(shape.value(s), flow::WallShape::parabola().value(s), 1e-12) << s;
+  }
+}
+
+TEST(SectionShape, OfALongPlateUnderASmallLoadIsTheClampedStrip) {
+  const wall::ClampedWall wall{12.0 * mm, 1.7 * mm, 20.0 * um, 250.0 * GPa, 0.23};
+  wall::FopplVonKarmanOptions options;
+  options.n_cells_x = 24;
+  options.n_cells_z = 6;
+  const WallModel model = plate_model(wall, options);
+  const flow::WallShape shape = section_shape(under(model, model.rest(), 1e3), 12.0 * mm, 1.7 * mm);
+  // Sections next to an end, of a width or so, are a little more pointed; they stand out less.
+  for (const double s : {0.0, 0.3, 0.7}) {
+    EXPECT_NEAR(shape.value(s), flow::WallShape::clamped_strip().value(s), 5e-3) << s;
+  }
+}
+
+TEST(SectionShape, OfAFlatWallIsAParabola) {
+  const WallModel model =
+      plate_model({3.0 * mm, 1.7 * mm, 1.0 * um, 250.0 * GPa, 0.23}, coarse(1e-9));
+  EXPECT_DOUBLE_EQ(section_shape(model.rest(), 3.0 * mm, 1.7 * mm).crest(), 1.5);
+}
+
 }  // namespace
 }  // namespace manoscope::twin
