@@ -194,17 +194,13 @@ std::vector<flow::PressureTerm> passages(const Experiment& experiment, FlowRate 
   return parts;
 }
 
-std::optional<validation::Outlet> told_outlet(const Experiment& experiment, FlowRate flow_rate,
-                                              std::optional<Pressure> gauge) {
-  if (!gauge && !experiment.rigid.outlet) return std::nullopt;
-  validation::Outlet outlet{gauge.value_or(Pressure{}), {}};
-  if (!experiment.rigid.outlet) return outlet;
-  const Estimate behind = flow::parasitic_estimate(
+validation::Outlet behind_passage(const Experiment& experiment, FlowRate flow_rate,
+                                  Pressure gauge) {
+  if (!experiment.rigid.outlet) return {gauge, {}};
+  const Estimate drop = flow::parasitic_estimate(
       passage_parts(experiment, "outlet", *experiment.rigid.outlet, flow_rate),
       flow_uncertainty_of(experiment).viscosity / experiment.fluid.viscosity);
-  outlet.pressure += Pressure::from_si(behind.value);
-  outlet.uncertainty = Pressure::from_si(behind.standard_uncertainty());
-  return outlet;
+  return {gauge + Pressure::from_si(drop.value), Pressure::from_si(drop.standard_uncertainty())};
 }
 
 validation::Outlet outlet_of(const Experiment& experiment, const FlowKnowledge& knowledge,
@@ -212,7 +208,9 @@ validation::Outlet outlet_of(const Experiment& experiment, const FlowKnowledge& 
                              const std::optional<inversion::TestSection>& section) {
   // Within a width of the outlet the profile is the end layer's, not the model's.
   constexpr double kDoubt = 0.1;
-  if (const auto told = told_outlet(experiment, run.flow_rate, run.outlet_pressure)) return *told;
+  if (run.outlet_pressure) {
+    return behind_passage(experiment, run.flow_rate, *run.outlet_pressure);
+  }
   const Array1 bars = reading.uncertainty.standard();
   const auto read = [&](Index ix) {
     return validation::Outlet{Pressure::from_si(reading.pressure[ix]), Pressure::from_si(bars[ix])};

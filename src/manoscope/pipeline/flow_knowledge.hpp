@@ -55,14 +55,15 @@ double inlet_spread(const experiment::Experiment& experiment, FlowRate flow_rate
 std::vector<flow::PressureTerm> passages(const experiment::Experiment& experiment,
                                          FlowRate flow_rate);
 
-/// Gauge pressure at the outlet behind a passage: what the gauge there reads (0 if there is none)
-/// plus the drop of the passage. None if the experiment tells of neither.
-std::optional<validation::Outlet> told_outlet(const experiment::Experiment& experiment,
-                                              FlowRate flow_rate, std::optional<Pressure> gauge);
+/// Gauge pressure at the channel's outlet where a gauge behind it reads this much: with the drop of
+/// the rigid outlet passage, if there is one.
+validation::Outlet behind_passage(const experiment::Experiment& experiment, FlowRate flow_rate,
+                                  Pressure gauge);
 
-/// Gauge pressure at the channel's outlet during a run: told_outlet(); else the reading at the end
-/// of the test section, less what `momentum` has the pressure fall from there on through the
-/// measured gap; without a test section the last reading.
+/// Gauge pressure at the channel's outlet during a run: behind_passage() of the outlet pressure
+/// that the flow list tells; else the reading at the end of the test section, less what `momentum`
+/// has the pressure fall from there on through the measured gap; without a test section the last
+/// reading. (A passage alone does not tell it: there is a head of liquid behind.)
 validation::Outlet outlet_of(const experiment::Experiment& experiment,
                              const FlowKnowledge& knowledge, const FlowRun& run,
                              const inversion::PressureReading& reading,

@@ -108,15 +108,16 @@ TEST(Passages, AreNamedAndASimulationTakesTheirPlace) {
   EXPECT_THROW(passages(experiment, 50.0 * mL_per_min), InputError);
 }
 
-TEST(ToldOutlet, IsTheGaugeAndThePassageBeforeIt) {
+TEST(BehindPassage, AddsWhatThePassageTakes) {
   experiment::Experiment experiment = channel_of_s1();
   const FlowRate Q = 20.0 * mL_per_min;
-  EXPECT_FALSE(told_outlet(experiment, Q, std::nullopt));
-  EXPECT_EQ(told_outlet(experiment, Q, 300.0 * Pa)->pressure.si(), 300.0);
+  EXPECT_EQ(behind_passage(experiment, Q, 300.0 * Pa).pressure.si(), 300.0);
   experiment.rigid.outlet = duct(5.0 * mm);
-  const double passage = passages(experiment, Q)[0].drop.si();
-  EXPECT_NEAR(told_outlet(experiment, Q, 300.0 * Pa)->pressure.si(), 300.0 + passage, 1e-9);
-  EXPECT_NEAR(told_outlet(experiment, Q, std::nullopt)->pressure.si(), passage, 1e-9);
+  experiment.fluid.viscosity_uncertainty = 0.01 * mPa_s;
+  const double drop = passages(experiment, Q)[0].drop.si();
+  const validation::Outlet outlet = behind_passage(experiment, Q, 300.0 * Pa);
+  EXPECT_NEAR(outlet.pressure.si(), 300.0 + drop, 1e-9);
+  EXPECT_NEAR(outlet.uncertainty.si(), 0.01 * drop, 1e-9);
 }
 
 }  // namespace
