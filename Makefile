@@ -42,7 +42,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage goals planning check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage goals planning flow-models check format format-check layers \
         scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -101,6 +101,13 @@ planning: ## try plans on virtual experiments, an hour of them, write the table 
 	@$(configure) -DMANOSCOPE_TESTS=ON
 	@cmake --build $(BUILD) -j $(JOBS) --target manoscope coverage_campaign
 	/usr/bin/python3 tools/plan_table.py $(BUILD) docs
+
+flow-models: ## errors of the flow models in S1 to S5: figure and table of docs/flow-models.md, minutes
+	@$(install) build libraries figures tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) -j $(JOBS) --target model_errors
+	$(BUILD)/model_errors $(BUILD)/model_errors.csv
+	/usr/bin/python3 tools/model_error_figure.py $(BUILD)/model_errors.csv docs
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 

@@ -64,6 +64,7 @@ Outcome try_levels(twin::Scenario scenario, const std::vector<double>& levels, i
   const test_support::TemporaryFolder folder;
   pipeline::MeasureOptions options;
   options.nonlocal.nonlocal = false;
+  options.flow.flow_models = false;
   Tally tally(static_cast<Index>(scenario.flow_rates.size()));
   for (int seed = 1; seed <= n_seeds; ++seed) {
     const auto made = twin::record_experiment(scenario, solved, static_cast<std::uint64_t>(seed));

@@ -285,6 +285,7 @@ TEST_P(VariedPractice, ReadsTheTruePressureWithinItsErrorBars) {
   const test_support::TemporaryFolder varied;
   write_varied(folder, varied.path(), variation);
   pipeline::MeasureOptions options;
+  options.flow.flow_models = false;
   options.reduce.level_order = variation.level_order;
   const auto measurement =
       pipeline::measure(experiment::read_experiment(varied.path()), options, 2);

@@ -92,7 +92,9 @@ MeasuredMember measure_member(const Member& member, const twin::Scenario& scenar
   const auto folder = scratch / fmt::format("{}-{}-{}", member.base, member.wall, member.seed);
   const auto made = twin::record_experiment(scenario, solved, member.own_seed(), 1);
   twin::write_experiment(folder, made, true);
-  MeasuredMember measured{pipeline::measure(experiment::read_experiment(folder), {}, 1),
+  pipeline::MeasureOptions options;
+  options.flow.flow_models = false;  // they do not touch p(x)
+  MeasuredMember measured{pipeline::measure(experiment::read_experiment(folder), options, 1),
                           made.truth};
   if (!keep) std::filesystem::remove_all(folder);
   return measured;
