@@ -48,7 +48,8 @@ struct PressureTerm {
 /// the loss behind the edge, up to 0.1 rho U^2/2 in laminar flow. Steps: half of Sampson's exact
 /// 3 eta Q/R^3 of a hole in a thin plate (1891), which H. L. Weissberg, Phys. Fluids 5 (1962) 1033,
 /// adds to the friction of a short tube for its two ends. Bends: W. B. Hooper, Chem. Eng. 88 (1981)
-/// 96, without his term in the pipe's diameter in inches, which is not meant for these sizes.
+/// 96, elbows flanged with R/D = 1 and mitred with one weld, without his term in the pipe's
+/// diameter in inches, which is not meant for these sizes.
 ///
 /// Standard uncertainties (rectangular, half width / sqrt 3):
 ///   development 10 % of it; contraction 0.1 rho U^2/2; expansion 30 % of it, for at low Re less is
