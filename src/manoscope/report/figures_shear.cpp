@@ -65,7 +65,7 @@ std::optional<Figure> wall_shear(const Measurement& m) {
   const DisplayUnit unit = pressure_unit(shear);
   PlotScript script;
   script.set(common_settings()).set("set multiplot\nset tmargin at screen 0.96");
-  script.set("set bmargin at screen 0.15\nset lmargin at screen 0.09\nset rmargin at screen 0.43");
+  script.set("set bmargin at screen 0.15\nset lmargin at screen 0.09\nset rmargin at screen 0.40");
   script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
   script.set(
       fmt::format("set xrange [0:{}]\nset yrange [0:*]", plain(m.channel_length / units.x.si)));
