@@ -174,6 +174,10 @@ int Program::run(int argc, char** argv) {
     };
   }
   constexpr int kOurFault = 1, kUsersFault = 2, kInterrupted = 130;
+  if (argc < 2) {
+    std::fputs(impl.app.help().c_str(), stderr);
+    return kUsersFault;
+  }
   try {
     impl.app.parse(argc, argv);
     impl.progress.clear();

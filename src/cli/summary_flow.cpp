@@ -79,7 +79,8 @@ std::string flow_checks_text(const Measurement& m) {
   }
   std::string text = fmt::format(
       "\nBy the flow model {}\n{}dp model: over the section, against dp_e above; agrees: E_n <= 1 "
-      "and p(x) fits along x, too.\nQ off the wall: from the deflection alone. dp predicted: "
+      "and the pressure along x fits, too.\nQ off the wall: from the deflection alone. dp "
+      "predicted: "
       "between the ends of the channel, from the\ncalibration and the set Q.\n",
       m.verdict_model, text_table(rows));
   if (doubtful) text += "*: the model itself may be more than 2 % off at this flow.\n";
