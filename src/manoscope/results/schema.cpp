@@ -22,7 +22,7 @@ List joined(List list, const List& more) {
 }  // namespace
 
 const std::vector<Dimension>& dimensions() {
-  static const std::vector<Dimension> own{
+  static const std::vector<Dimension> kOwn{
       {"x", [](const M& m) { return m.x.size(); }, "stations along the flow"},
       {"x_other", [](const M& m) { return m.x.size(); }, "the same stations, second index"},
       {"level", [](const M& m) { return m.level_pressure.size(); }, "calibration pressures"},
@@ -34,7 +34,7 @@ const std::vector<Dimension>& dimensions() {
        "crossings of flow and static profiles"},
   };
   static const std::vector<Dimension> list =
-      joined(joined(own, flow_dimensions()), joined(map_dimensions(), check_dimensions()));
+      joined(joined(kOwn, flow_dimensions()), joined(map_dimensions(), check_dimensions()));
   return list;
 }
 
@@ -62,7 +62,7 @@ const std::vector<GlobalText>& global_texts() {
 }
 
 const std::vector<Variable>& variables() {
-  static const std::vector<Variable> own{
+  static const std::vector<Variable> kOwn{
       {"x", {"x"}, "m", "distance from the channel's inlet edge along the flow", &M::x},
       {"run", {"run"}, "1", "label of the flow run", &M::run},
 
@@ -253,7 +253,7 @@ const std::vector<Variable>& variables() {
        &M::crossing_pressure},
   };
   static const std::vector<Variable> list =
-      joined(joined(joined(own, flow_variables()), joined(tube_law_variables(), map_variables())),
+      joined(joined(joined(kOwn, flow_variables()), joined(tube_law_variables(), map_variables())),
              check_variables());
   return list;
 }
