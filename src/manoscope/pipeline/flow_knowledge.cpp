@@ -194,10 +194,8 @@ std::vector<flow::PressureTerm> passages(const Experiment& experiment, FlowRate 
   return parts;
 }
 
-std::optional<validation::Outlet> told_outlet(const Experiment& experiment, FlowRate flow_rate,
-                                              std::optional<Pressure> gauge) {
-  if (!gauge && !experiment.rigid.outlet) return std::nullopt;
-  validation::Outlet outlet{gauge.value_or(Pressure{}), {}};
+validation::Outlet told_outlet(const Experiment& experiment, FlowRate flow_rate, Pressure gauge) {
+  validation::Outlet outlet{gauge, {}};
   if (!experiment.rigid.outlet) return outlet;
   const Estimate behind = flow::parasitic_estimate(
       passage_parts(experiment, "outlet", *experiment.rigid.outlet, flow_rate),
@@ -212,7 +210,7 @@ validation::Outlet outlet_of(const Experiment& experiment, const FlowKnowledge& 
                              const std::optional<inversion::TestSection>& section) {
   // Within a width of the outlet the profile is the end layer's, not the model's.
   constexpr double kDoubt = 0.1;
-  if (const auto told = told_outlet(experiment, run.flow_rate, run.outlet_pressure)) return *told;
+  if (run.outlet_pressure) return told_outlet(experiment, run.flow_rate, *run.outlet_pressure);
   const Array1 bars = reading.uncertainty.standard();
   const auto read = [&](Index ix) {
     return validation::Outlet{Pressure::from_si(reading.pressure[ix]), Pressure::from_si(bars[ix])};

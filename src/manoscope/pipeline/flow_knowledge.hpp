@@ -55,14 +55,15 @@ double inlet_spread(const experiment::Experiment& experiment, FlowRate flow_rate
 std::vector<flow::PressureTerm> passages(const experiment::Experiment& experiment,
                                          FlowRate flow_rate);
 
-/// Gauge pressure at the outlet behind a passage: what the gauge there reads (0 if there is none)
-/// plus the drop of the passage. None if the experiment tells of neither.
-std::optional<validation::Outlet> told_outlet(const experiment::Experiment& experiment,
-                                              FlowRate flow_rate, std::optional<Pressure> gauge);
+/// Gauge pressure at the channel's outlet: what a gauge behind the outlet passage reads plus the
+/// drop of the passage; 0 Pa without one.
+validation::Outlet told_outlet(const experiment::Experiment& experiment, FlowRate flow_rate,
+                               Pressure gauge);
 
-/// Gauge pressure at the channel's outlet during a run: told_outlet(); else the reading at the end
-/// of the test section, less what `momentum` has the pressure fall from there on through the
-/// measured gap; without a test section the last reading.
+/// Gauge pressure at the channel's outlet during a run: told_outlet() of its gauge; without a gauge
+/// the reading at the end of the test section, less what `momentum` has the pressure fall from
+/// there on through the measured gap; without a test section the last reading. The drop of a
+/// passage alone is no answer: what hose and column of liquid hold behind it is not told.
 validation::Outlet outlet_of(const experiment::Experiment& experiment,
                              const FlowKnowledge& knowledge, const FlowRun& run,
                              const inversion::PressureReading& reading,

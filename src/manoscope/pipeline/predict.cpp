@@ -81,7 +81,7 @@ FromRuns read_what_is_missing(const Experiment& experiment, const Calibration& c
                               const Monitor& monitor) {
   FromRuns result;
   const bool wants_model = options.model == kAutomaticModel;
-  const bool wants_outlet = !options.outlet_pressure && !experiment.rigid.outlet;
+  const bool wants_outlet = !options.outlet_pressure.has_value();
   MeasureOptions reading = measure;
   reading.flow.flow_model = options.model;
   std::vector<RunFindings> findings;
@@ -105,8 +105,9 @@ FromRuns read_what_is_missing(const Experiment& experiment, const Calibration& c
 std::string outlet_words(const Experiment& experiment, const PredictOptions& options,
                          bool from_runs) {
   if (options.outlet_pressure) return "as given";
-  if (experiment.rigid.outlet) return "drop of the outlet passage";
-  return from_runs ? "as the runs have it" : "0 Pa: no outlet passage and no run tells it";
+  if (from_runs) return "as the runs have it";
+  return experiment.rigid.outlet ? "drop of the outlet passage and 0 Pa behind it, since no run tells"
+                                 : "0 Pa: no outlet passage and no run tells it";
 }
 
 }  // namespace
@@ -148,10 +149,8 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
   parallel_for(static_cast<Index>(flow_rates.size()), n_threads, [&](Index i) {
     monitor.checkpoint();
     const FlowRate flow_rate = flow_rates[static_cast<std::size_t>(i)];
-    validation::Outlet outlet =
-        runs.outlet
-            ? runs.outlet->at(flow_rate)
-            : told_outlet(experiment, flow_rate, std::nullopt).value_or(validation::Outlet{});
+    validation::Outlet outlet = runs.outlet ? runs.outlet->at(flow_rate)
+                                            : told_outlet(experiment, flow_rate, Pressure{});
     if (options.outlet_pressure) outlet = {*options.outlet_pressure, {}};
     if (options.outlet_uncertainty) outlet.uncertainty = *options.outlet_uncertainty;
     validation::FlowSetup setup = known.setup;

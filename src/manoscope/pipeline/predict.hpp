@@ -23,7 +23,7 @@ struct PredictOptions {
         "model", model,
         "flow model: paper, creeping, momentum, energy, developing, plane-march or section-march");
     visit("outlet-pressure", outlet_pressure,
-          "gauge pressure where the channel ends; auto: outlet passage, else as the runs have it");
+          "gauge pressure where the channel ends; auto: as the runs have it, else outlet passage");
     visit("outlet-uncertainty", outlet_uncertainty, "its standard uncertainty; auto: as found");
     coupling.describe(visit);
   }
@@ -40,9 +40,9 @@ struct Predictions {
 };
 
 /// Predicts flow rates from the calibration of an experiment. Its flow runs serve to place the
-/// channel, to choose the flow model (choose_model()) and, where neither outlet pressure nor outlet
-/// passage is told, for the pressure at the outlet: a straight line in Q through what outlet_of()
-/// finds in each, with the scatter about it.
+/// channel, to choose the flow model (choose_model()) and, where the outlet pressure is not given,
+/// to find it: a straight line in Q through what outlet_of() finds in each, with the scatter about
+/// it. Without runs it is told_outlet() with 0 Pa behind the passage.
 ///
 /// @throws InputError as calibrate(), know_flow() and validation::predict_flow(); for no flow rate,
 ///         or one that is not positive.
