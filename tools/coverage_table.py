@@ -136,12 +136,12 @@ def pages(stretches, by):
     return "\n\n".join(text)
 
 
-def put_between_markers(page, text):
+def put_between_markers(page, text, begin=BEGIN, end=END):
     whole = page.read_text()
-    if BEGIN not in whole or END not in whole:
-        sys.exit(f"{page}: lacks the lines {BEGIN} and {END}")
-    before, rest = whole.split(BEGIN, 1)
-    page.write_text(f"{before}{BEGIN}\n\n{text}\n\n{END}{rest.split(END, 1)[1]}")
+    if begin not in whole or end not in whole:
+        sys.exit(f"{page}: lacks the lines {begin} and {end}")
+    before, rest = whole.split(begin, 1)
+    page.write_text(f"{before}{begin}\n\n{text}\n\n{end}{rest.split(end, 1)[1]}")
 
 
 def main():

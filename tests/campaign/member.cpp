@@ -86,17 +86,24 @@ std::uint64_t Member::own_seed() const {
   return static_cast<std::uint64_t>(RandomStream(seed, "member " + base, wall).below(1 << 30));
 }
 
-MeasuredMember measure_member(const Member& member, const twin::Scenario& scenario,
-                              const twin::SolvedScenario& solved,
-                              const std::filesystem::path& scratch, bool keep) {
+WrittenMember write_member(const Member& member, const twin::Scenario& scenario,
+                           const twin::SolvedScenario& solved,
+                           const std::filesystem::path& scratch) {
   const auto folder = scratch / fmt::format("{}-{}-{}", member.base, member.wall, member.seed);
   const auto made = twin::record_experiment(scenario, solved, member.own_seed(), 1);
   twin::write_experiment(folder, made, true);
+  return {folder, made.truth, made.scalars};
+}
+
+MeasuredMember measure_member(const Member& member, const twin::Scenario& scenario,
+                              const twin::SolvedScenario& solved,
+                              const std::filesystem::path& scratch, bool keep) {
+  const WrittenMember written = write_member(member, scenario, solved, scratch);
   pipeline::MeasureOptions options;
   options.flow.flow_models = false;  // they do not touch p(x)
-  MeasuredMember measured{pipeline::measure(experiment::read_experiment(folder), options, 1),
-                          made.truth};
-  if (!keep) std::filesystem::remove_all(folder);
+  MeasuredMember measured{
+      pipeline::measure(experiment::read_experiment(written.folder), options, 1), written.truth};
+  if (!keep) std::filesystem::remove_all(written.folder);
   return measured;
 }
 
@@ -133,7 +140,7 @@ std::string rows_of(const Member& member, const twin::Scenario& scenario,
       rows += row(front("drop"), judge_drop(m, r, expected), "", "");
     }
   }
-  return rows + member.name() + "done,\n";
+  return rows;
 }
 
 }  // namespace manoscope::campaign

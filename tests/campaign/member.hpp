@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "manoscope/results/measurement.hpp"
 #include "manoscope/twin/scenario.hpp"
@@ -32,14 +33,26 @@ struct Member {
   std::uint64_t own_seed() const;
 };
 
+/// A member as a folder that can be measured, and its truth.
+struct WrittenMember {
+  std::filesystem::path folder;
+  twin::Truth truth;
+  std::vector<twin::RunScalars> scalars;  ///< one a run
+};
+
+/// Makes the experiment and writes it to a folder of its own below `scratch`.
+WrittenMember write_member(const Member& member, const twin::Scenario& scenario,
+                           const twin::SolvedScenario& solved,
+                           const std::filesystem::path& scratch);
+
 /// A member with its truth.
 struct MeasuredMember {
   results::Measurement measurement;
   twin::Truth truth;
 };
 
-/// Makes the experiment, writes it to a folder of its own below `scratch`, and measures it with the
-/// settings that a user gets who sets none.
+/// Makes the experiment by write_member(), and measures it with the settings that a user gets who
+/// sets none.
 /// @param keep  leave the folder.
 MeasuredMember measure_member(const Member& member, const twin::Scenario& scenario,
                               const twin::SolvedScenario& solved,
@@ -50,7 +63,7 @@ validation::Judgement judge_stretch(const MeasuredMember& member, Index run,
                                     const Stretch& stretch);
 
 /// The header of the table, and the rows of one member: each run over each stretch, the whole
-/// channel, and the drop over its test section; then a row that says the member is complete.
+/// channel, and the drop over its test section.
 extern const char* const kHeader;
 std::string rows_of(const Member& member, const twin::Scenario& scenario,
                     const MeasuredMember& measured);

@@ -27,7 +27,9 @@ struct ThinnedRun {
     const auto place = [&](Index station) {
       return std::lower_bound(stations.begin(), stations.end(), station) - stations.begin();
     };
-    state = inversion::thinned(run.profile, stations);
+    const flow::Channel& channel = knowledge.setup.channel;
+    state = inversion::thinned(validation::bridged(run.profile, channel.length, channel.width),
+                               stations);
     reading = inversion::thinned(whole, stations);
     section = {place(whole_section.first), place(whole_section.last)};
   }

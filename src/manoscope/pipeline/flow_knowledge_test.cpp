@@ -120,5 +120,40 @@ TEST(BehindPassage, AddsWhatThePassageTakes) {
   EXPECT_NEAR(outlet.uncertainty.si(), 0.01 * drop, 1e-9);
 }
 
+TEST(OutletOf, IsReadOffTheWallUnlessAGaugeTellsIt) {
+  experiment::Experiment experiment = channel_of_s1();
+  const Index n = 32;
+  FlowKnowledge knowledge;
+  knowledge.setup.channel = kChannel;
+  knowledge.setup.fluid = fluid_of(experiment);
+  knowledge.setup = validation::with_tables(knowledge.setup, -1.0 * um, 1.0 * um);
+  FlowRun run;
+  run.flow_rate = 20.0 * mL_per_min;
+  run.profile.x = Array1::LinSpaced(n, 0.0, 15.5e-3);
+  run.profile.zeta = Array1::Zero(n);
+  run.profile.uncertainty.independent = Array1::Zero(n);
+  run.profile.flags = Flags1::Zero(n);
+  // A wall that does not move: the flow is developed and p falls by r Q along x, to 400 Pa.
+  const double fall = flow::passage_drop(experiment.fluid.viscosity, run.flow_rate,
+                                         {kChannel.length, kChannel.width, kChannel.height})
+                          .si();
+  inversion::PressureReading reading;
+  reading.x = run.profile.x;
+  reading.pressure = 400.0 + fall * (1.0 - reading.x / 15.5e-3);
+  reading.uncertainty.independent = Array1::Constant(n, 3.0);
+  reading.flags = Flags1::Zero(n);
+  const inversion::TestSection section{2, n - 4};
+  const auto found = [&] { return outlet_of(experiment, knowledge, run, reading, section); };
+  // Sections come from a table, 1e-8, and r by the series: a millipascal of the 1.4 kPa left.
+  EXPECT_NEAR(found().pressure.si(), 400.0, 2e-3);
+  EXPECT_GE(found().uncertainty.si(), 3.0);
+  // What a passage costs does not tell the pressure behind it: a hose, a column of liquid.
+  experiment.rigid.outlet = duct(5.0 * mm);
+  EXPECT_NEAR(found().pressure.si(), 400.0, 2e-3);
+  run.outlet_pressure = 50.0 * Pa;
+  EXPECT_EQ(found().pressure.si(),
+            behind_passage(experiment, run.flow_rate, 50.0 * Pa).pressure.si());
+}
+
 }  // namespace
 }  // namespace manoscope::pipeline

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/numerics/natural_spline.hpp"
 
 namespace manoscope::validation {
 
@@ -42,6 +45,56 @@ WallLine wall_line(const Profile& state, Length length) {
   line.x = Eigen::Map<const Array1>(x.data(), n);
   line.zeta = Eigen::Map<const Array1>(zeta.data(), n);
   return line;
+}
+
+namespace {
+
+constexpr Index kBridgeheads = 8;  // points on either side that a bridge goes through
+
+/// Gives the stations between two neighbours of a line what a spline through the points around
+/// says.
+void bridge(const Profile& state, const WallLine& line, Index left, Profile& whole) {
+  const Index first = std::max<Index>(0, left + 1 - kBridgeheads);
+  const Index n = std::min<Index>(line.x.size(), left + 1 + kBridgeheads) - first;
+  std::vector<Index> missing;
+  for (Index ix = 0; ix < state.x.size(); ++ix) {
+    if (state.x[ix] > line.x[left] && state.x[ix] < line.x[left + 1]) missing.push_back(ix);
+  }
+  if (missing.empty() || n < 4) return;
+  const auto m = static_cast<Index>(missing.size());
+  Array1 at(m);
+  for (Index k = 0; k < m; ++k) at[k] = state.x[missing[static_cast<std::size_t>(k)]];
+  const Matrix weights = numerics::NaturalSpline(line.x.segment(first, n)).sampling(at);
+  const auto carry = [&](const Matrix& by, const Array1& values, Array1& into) {
+    Array1 known = Array1::Zero(n);  // 0 at the clamped ends
+    for (Index i = 0; i < n; ++i) {
+      const Index ix = line.station[static_cast<std::size_t>(first + i)];
+      if (ix != kClampedEnd) known[i] = values[ix];
+    }
+    const Array1 carried = (by * known.matrix()).array();
+    for (Index k = 0; k < m; ++k) into[missing[static_cast<std::size_t>(k)]] = carried[k];
+  };
+  carry(weights, state.zeta, whole.zeta);
+  for (std::size_t k = 0; k < state.uncertainty.modes.size(); ++k) {
+    carry(weights, state.uncertainty.modes[k].effect, whole.uncertainty.modes[k].effect);
+  }
+  Array1& noise = whole.uncertainty.independent;
+  carry(weights.cwiseAbs2(), state.uncertainty.independent.square(), noise);
+  for (const Index ix : missing) {
+    noise[ix] = std::sqrt(noise[ix]);
+    whole.flags[ix] = 0;
+  }
+}
+
+}  // namespace
+
+Profile bridged(const Profile& state, Length length, Length longest) {
+  const WallLine line = wall_line(state, length);
+  Profile whole = state;
+  for (Index i = 0; i + 1 < line.x.size(); ++i) {
+    if (line.x[i + 1] - line.x[i] <= longest.si()) bridge(state, line, i, whole);
+  }
+  return whole;
 }
 
 flow::FlowCase flow_case(const FlowSetup& setup, FlowRate flow_rate, const WallLine& line) {

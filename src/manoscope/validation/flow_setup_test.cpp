@@ -45,6 +45,47 @@ TEST(WallLine, TakesStationsAtTheEndsAsTheyAre) {
   EXPECT_EQ(line.station, (std::vector<Index>{0, 1, 2}));
 }
 
+/// The mean deflection of a stretched wall, 30 um, which rises from its clamped ends over w/(2 pi).
+double risen(double x) {
+  const double rise = kChannel.width.si() / 6.283, l = kChannel.length.si();
+  return 30e-6 * (1.0 - std::exp(-x / rise) - std::exp(-(l - x) / rise));
+}
+
+/// Stations 64 um apart, some outside the channel. Missing are the first inside, a patch of 0.13 mm
+/// near the inlet and one of 1.9 mm.
+Profile patched() {
+  Profile state = profile({});
+  state.x = Array1::LinSpaced(247, -0.0946e-3, 15.5946e-3);
+  state.zeta = state.x.unaryExpr([](double x) { return risen(x); });
+  state.uncertainty.independent = Array1::Constant(247, 4e-9);
+  state.uncertainty.modes = {{"plane", "leveling", 1e-9 * (1.0 + state.x / 15.5e-3)}};
+  state.flags = Flags1::Zero(247);
+  for (const Index ix : {2, 5, 6}) state.flags[ix] = StationFlag::no_data;
+  for (Index ix = 100; ix < 130; ++ix) state.flags[ix] = StationFlag::no_data;
+  for (Index ix = 0; ix < 247; ++ix) {
+    if (state.flags[ix] != 0) state.zeta[ix] = 0.0;
+  }
+  return state;
+}
+
+TEST(Bridged, CarriesTheDeflectionOverShortStretchesWithoutData) {
+  const Profile state = patched(), whole = bridged(state, kChannel.length, kChannel.width);
+  for (const Index ix : {2, 5, 6}) {
+    EXPECT_EQ(whole.flags[ix], 0);
+    // A straight line is up to 1.5 um off; a spline over 0.19 mm by h^4 zeta''''/384, 0.02 um, but
+    // next to its end at the rim, where it does not bend, by a tenth of the straight line's.
+    EXPECT_NEAR(whole.zeta[ix], risen(state.x[ix]), ix == 2 ? 0.2e-6 : 0.05e-6) << ix;
+    EXPECT_GT(whole.uncertainty.independent[ix], 1e-9);
+    EXPECT_LT(whole.uncertainty.independent[ix], 8e-9);
+  }
+  // The spline goes through the errors of its neighbours, which are straight in x, and through none
+  // at the clamped end: some per cent.
+  EXPECT_NEAR(whole.uncertainty.modes[0].effect[6], state.uncertainty.modes[0].effect[6], 5e-11);
+  // 1.9 mm are longer than the channel is wide; outside the channel there is nothing to bridge.
+  EXPECT_NE(whole.flags[110], 0);
+  EXPECT_EQ(whole.zeta[50], state.zeta[50]);
+}
+
 TEST(ModelledRun, SpreadsTheInletTowardsTheOtherProfile) {
   FlowSetup with = setup();
   Profile state = profile({});

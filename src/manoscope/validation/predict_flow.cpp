@@ -206,13 +206,14 @@ class Coupling {
     const Array1 at = felt(p);
     for (Index i = 0; i < p.size(); ++i) {
       if (wall_.beyond(i, at[i]) == 0.0) continue;
+      const bool above = at[i] > wall_.highest(i);
       throw InputError(
           kWhere,
           fmt::format("at {:.4g} mL/min the pressure at x = {:.4g} mm would be {:.4g} kPa, where "
                       "the calibration ends at {:.4g} kPa",
                       flow_rate_.in(mL_per_min), wall_.x()[i] * 1e3, at[i] * 1e-3,
-                      wall_.highest(i) * 1e-3),
-          at[i] > wall_.highest(i)
+                      (above ? wall_.highest(i) : wall_.lowest(i)) * 1e-3),
+          above
               ? fmt::format("Calibrate to a higher pressure, or give less than about {:.3g} mL/min",
                             flow_rate_.in(mL_per_min)*wall_.highest(i) / at[i])
               : std::string("Calibrate to a lower pressure, or give a higher outlet pressure"));

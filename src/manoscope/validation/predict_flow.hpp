@@ -11,8 +11,8 @@
 namespace manoscope::validation {
 
 struct PredictFlowOptions {
-  /// How far p may leave the calibrated range of a station, as a share of that range, on the
-  /// straight continuation of its curve.
+  /// How far p may leave the calibrated range of a station on the straight continuation of its
+  /// curve: until p or zeta has gone on by this share of its range.
   double largest_extrapolation = 0.1;
   /// Over which the wall forgets a disturbance, sqrt(-b/a) of its tube law; nullopt: width/(2 pi),
   /// half of that of a taut strip; 0: every station on its own.
@@ -23,7 +23,7 @@ struct PredictFlowOptions {
   template <class Visitor>
   void describe(Visitor&& visit) {
     visit("largest-extrapolation", largest_extrapolation,
-          "how far the pressure may leave the calibrated range, as a share of it");
+          "how far pressure and deflection may leave their calibrated range, as a share of it");
     visit("healing-length", healing_length,
           "length over which the wall forgets a disturbance; auto: of the fitted wall, else "
           "width/(2 pi)");

@@ -6,6 +6,7 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
+#include "manoscope/numerics/robust.hpp"
 
 namespace manoscope::validation {
 
@@ -18,23 +19,42 @@ CurvedWall::CurvedWall(const calibration::ConstitutiveCurves& curves, Length len
   with_curve.x = curves.x;
   with_curve.zeta = Array1::Zero(curves.x.size());
   with_curve.flags = Flags1::Zero(curves.x.size());
-  bool any = false;
+  std::vector<double> lowest, highest;
   for (Index ix = 0; ix < curves.x.size(); ++ix) {
-    const bool has = curves.curves[static_cast<std::size_t>(ix)].has_value();
-    with_curve.flags[ix] = has ? 0 : StationFlag::no_data;
-    any = any || (has && curves.x[ix] >= 0.0 && curves.x[ix] <= length.si());
+    const auto& own = curves.curves[static_cast<std::size_t>(ix)];
+    if (!own || curves.x[ix] < 0.0 || curves.x[ix] > length.si()) continue;
+    lowest.push_back(own->lowest());
+    highest.push_back(own->highest());
   }
-  if (!any) {
+  const auto refuse_if = [](bool none) {
+    if (!none) return;
     throw InputError("constitutive curves", "no station inside the channel has a curve",
                      "Check the channel's length and the calibration");
+  };
+  refuse_if(lowest.empty());
+  const double low_end = numerics::median(lowest), high_end = numerics::median(highest);
+  const double allowed = largest_extrapolation * (high_end - low_end);
+  for (Index ix = 0; ix < curves.x.size(); ++ix) {
+    const auto& own = curves.curves[static_cast<std::size_t>(ix)];
+    const bool counts =
+        own && own->lowest() <= low_end + allowed && own->highest() >= high_end - allowed;
+    with_curve.flags[ix] = counts ? 0 : StationFlag::no_data;
   }
+  refuse_if((with_curve.flags != 0).all());
   const WallLine line = wall_line(with_curve, length);
   x_ = line.x;
   station_ = line.station;
   for (Index i = 0; i < size(); ++i) {
     const ConstitutiveCurve* const own = curve(i);
     if (own == nullptr) continue;
-    const double low = own->lowest() - room(*own), high = own->highest() + room(*own);
+    const double span = own->zeta(own->highest()) - own->zeta(own->lowest());
+    largest_span_ = std::max(largest_span_, std::abs(span));
+  }
+  for (Index i = 0; i < size(); ++i) {
+    const ConstitutiveCurve* const own = curve(i);
+    if (own == nullptr) continue;
+    const double low = own->lowest() - room(*own, own->lowest());
+    const double high = own->highest() + room(*own, own->highest());
     for (const double p : {low, own->lowest(), own->highest(), high}) {
       least_ = std::min(least_, zeta(i, p));
       greatest_ = std::max(greatest_, zeta(i, p));
@@ -47,16 +67,18 @@ const ConstitutiveCurve* CurvedWall::curve(Index i) const {
   return ix == kClampedEnd ? nullptr : &*curves_.curves[static_cast<std::size_t>(ix)];
 }
 
-double CurvedWall::room(const ConstitutiveCurve& curve) const {
-  return extrapolation_ * (curve.highest() - curve.lowest());
+double CurvedWall::room(const ConstitutiveCurve& curve, double end) const {
+  const double slope = std::abs(curve.slope(end)), range = curve.highest() - curve.lowest();
+  return extrapolation_ * (slope * range > largest_span_ ? largest_span_ / slope : range);
 }
 
 double CurvedWall::zeta(Index i, double pressure) const {
   const ConstitutiveCurve* const own = curve(i);
   if (own == nullptr) return 0.0;
   const double inside = std::clamp(pressure, own->lowest(), own->highest());
-  const double beyond = std::clamp(pressure - inside, -room(*own), room(*own));
-  return own->zeta(inside) + (beyond == 0.0 ? 0.0 : own->slope(inside) * beyond);
+  if (inside == pressure) return own->zeta(inside);
+  const double most = room(*own, inside);
+  return own->zeta(inside) + own->slope(inside) * std::clamp(pressure - inside, -most, most);
 }
 
 double CurvedWall::slope(Index i, double pressure) const {
@@ -74,7 +96,13 @@ double CurvedWall::beyond(Index i, double pressure) const {
   const ConstitutiveCurve* const own = curve(i);
   if (own == nullptr) return 0.0;
   const double inside = std::clamp(pressure, own->lowest(), own->highest());
-  return std::max(0.0, std::abs(pressure - inside) - room(*own));
+  if (inside == pressure) return 0.0;
+  return std::max(0.0, std::abs(pressure - inside) - room(*own, inside));
+}
+
+double CurvedWall::lowest(Index i) const {
+  const ConstitutiveCurve* const own = curve(i);
+  return own == nullptr ? -std::numeric_limits<double>::infinity() : own->lowest();
 }
 
 double CurvedWall::highest(Index i) const {
