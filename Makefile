@@ -19,6 +19,10 @@ SECONDS_PER_READER ?= 30
 COVERAGE ?= $(BUILD)/coverage.csv
 WALLS ?= 14
 SEEDS ?= 5
+# Of `make verdicts`: the same, of five samples.
+VERDICTS ?= $(BUILD)/verdicts.csv
+VERDICT_WALLS ?= 8
+VERDICT_SEEDS ?= 5
 # Of `make tidy-changed`: how far back a source counts as changed.
 TIDY_COMMITS ?= 6
 # `make asan` leaves out tests that took longer than this in `make test`: ten times as long under the
@@ -42,7 +46,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage goals planning flow-models check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models check format format-check layers \
         scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -78,6 +82,13 @@ coverage: ## do the error bars hold? hundreds of virtual experiments; goes on wh
 	@cmake --build $(BUILD) --target coverage_campaign -j $(JOBS)
 	$(BUILD)/coverage_campaign -o $(COVERAGE) --walls $(WALLS) --seeds $(SEEDS)
 	@tools/coverage_table.py $(COVERAGE) --page docs/error-budget.md
+
+verdicts: ## are the flow verdicts right? 200 virtual experiments, an hour; goes on where it was stopped
+	@$(install) build libraries figures tests
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) --target verdict_campaign -j $(JOBS)
+	$(BUILD)/verdict_campaign -o $(VERDICTS) --walls $(VERDICT_WALLS) --seeds $(VERDICT_SEEDS)
+	@tools/verdict_table.py $(VERDICTS) --page docs/validation.md
 
 goals: ## what a measurement reaches against what it was to reach: a table of docs/error-budget.md
 	@$(install) build libraries figures tests bench
