@@ -32,3 +32,23 @@ endif()
 if(MANOSCOPE_TESTS)
   find_package(GTest REQUIRED)
 endif()
+
+# Navier-Stokes (src/navier_stokes), built only where deal.II and the sparse solvers are. Not under
+# the sanitizers or the fuzzer, where the libraries' own leaks and the minutes of compiling say
+# nothing of our code. deal.II's CMake package would set the compiler's flags, too: its folders and
+# libraries are all that is taken, and of these what the program calls itself.
+option(MANOSCOPE_NAVIER_STOKES "Build the Navier-Stokes solver where deal.II is installed" ON)
+if(MANOSCOPE_NAVIER_STOKES AND NOT MANOSCOPE_SANITIZE AND NOT MANOSCOPE_FUZZ)
+  find_package(deal.II 9.4 QUIET)
+  find_library(DMUMPS_LIBRARY dmumps)
+  find_library(UMFPACK_LIBRARY umfpack)
+  find_path(DMUMPS_INCLUDE_DIR dmumps_c.h)
+  if(deal.II_FOUND AND DMUMPS_LIBRARY AND DMUMPS_INCLUDE_DIR AND UMFPACK_LIBRARY)
+    add_library(manoscope_dealii INTERFACE)
+    target_include_directories(manoscope_dealii SYSTEM INTERFACE ${DEAL_II_INCLUDE_DIRS})
+    target_compile_definitions(manoscope_dealii INTERFACE BOOST_NO_AUTO_PTR)
+    target_link_options(manoscope_dealii INTERFACE -Wl,--as-needed)
+    target_link_libraries(manoscope_dealii INTERFACE
+      ${DEAL_II_LIBRARIES_RELEASE} ${DMUMPS_LIBRARY} ${UMFPACK_LIBRARY})
+  endif()
+endif()

@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   manoscope::cli::add_formats(program);
   manoscope::cli::add_measure(program);
   manoscope::cli::add_predict(program);
+  manoscope::cli::add_simulate(program);
   manoscope::cli::add_plan(program);
   manoscope::cli::add_twin(program);
   manoscope::cli::add_judge(program);

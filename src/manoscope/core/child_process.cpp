@@ -120,6 +120,7 @@ std::optional<ChildProcess> ChildProcess::start(const std::vector<std::string>& 
   ChildProcess child;
   child.id_ = id;
   child.output_ = ends[0];
+  child.stop_requested_ = options.stop_requested;
   child.deadline_ms_ = now_ms() + static_cast<long long>(options.wall_seconds * 1e3);
   return child;
 }
@@ -128,6 +129,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : id_(std::exchange(other.id_, -1)),
       output_(std::exchange(other.output_, -1)),
       deadline_ms_(other.deadline_ms_),
+      stop_requested_(std::move(other.stop_requested_)),
       timed_out_(other.timed_out_),
       ended_(other.ended_),
       end_(other.end_) {}
@@ -149,7 +151,11 @@ std::size_t ChildProcess::read(char* into, std::size_t size) {
   while (output_ >= 0 && !timed_out_) {
     pollfd waiting{output_, POLLIN, 0};
     const int ready = ::poll(&waiting, 1, milliseconds_left());
-    if (ready < 0 && errno == EINTR) continue;
+    if (ready < 0 && errno == EINTR) {
+      if (!stop_requested_ || !stop_requested_()) continue;
+      kill();
+      return 0;
+    }
     if (ready < 0) fail("poll", errno);
     if (ready == 0) {
       timed_out_ = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ class ChildProcess {
     double wall_seconds = 60.0;            ///< from the start; then the group is killed
     bool messages_too = false;             ///< read its standard error as well, else drop it
     std::vector<std::string> environment;  ///< "NAME=value", beside what is inherited
+    std::function<bool()> stop_requested;  ///< asked when a signal comes; true ends the child
   };
 
   /// Starts `words[0]`, a path or a program to be found on PATH.
@@ -40,7 +42,8 @@ class ChildProcess {
   ChildProcess& operator=(ChildProcess&&) = delete;
 
   int id() const { return id_; }
-  /// Reads at most `size` bytes, and at least one unless the output has ended or the time is up.
+  /// Reads at most `size` bytes, and at least one unless the output has ended, the time is up or a
+  /// stop was requested.
   /// @return The number of bytes; 0 at the end.
   std::size_t read(char* into, std::size_t size);
   /// As much as there is, at most `most` bytes; more ends the child.
@@ -57,6 +60,7 @@ class ChildProcess {
   int id_ = -1;
   int output_ = -1;
   long long deadline_ms_ = 0;  // of the steady clock
+  std::function<bool()> stop_requested_;
   bool timed_out_ = false;
   bool ended_ = false;
   ChildEnd end_;

@@ -1,0 +1,45 @@
+#include "flow_json.hpp"
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace manoscope::navier_stokes {
+namespace {
+
+nlohmann::ordered_json list(const Array1& values) {
+  return std::vector<double>(values.data(), values.data() + values.size());
+}
+
+}  // namespace
+
+std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
+  nlohmann::ordered_json object;
+  object["dim"] = flow.dim;
+  object["drop_Pa"] = flow.drop;
+  object["drop_numerical_uncertainty_Pa"] = flow.drop_uncertainty;
+  object["coarse_drop_Pa"] = flow.coarse_drop;
+  object["converged"] = flow.converged;
+  object["x_m"] = list(flow.x);
+  object["gap_m"] = list(flow.gap);
+  object["wall_pressure_Pa"] = list(flow.wall_pressure);
+  object["wall_pressure_numerical_uncertainty_Pa"] = list(flow.wall_pressure_uncertainty);
+  object["mean_pressure_Pa"] = list(flow.mean_pressure);
+  object["mean_pressure_numerical_uncertainty_Pa"] = list(flow.mean_pressure_uncertainty);
+  object["floor_pressure_Pa"] = list(flow.floor_pressure);
+  object["wall_shear_Pa"] = list(flow.wall_shear);
+  object["floor_shear_Pa"] = list(flow.floor_shear);
+  object["unknowns"] = flow.n_unknowns;
+  object["newton_steps"] = flow.n_newton_steps;
+  object["largest_linear_residual"] = flow.largest_residual;
+  object["seconds"] = effort.seconds;
+  object["peak_MB"] = effort.peak_MB;
+  return object.dump() + '\n';
+}
+
+std::string error_json(const InputError& error) {
+  nlohmann::ordered_json object;
+  object["error"] = {{"where", error.where()}, {"found", error.found()}, {"mend", error.mend()}};
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace manoscope::navier_stokes

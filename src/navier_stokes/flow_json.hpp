@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "flow_simulation.hpp"
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::navier_stokes {
+
+/// What a simulation took beside its results.
+struct Effort {
+  double seconds = 0.0;
+  double peak_MB = 0.0;  ///< most memory held at a time, 10^6 bytes
+};
+
+/// One object, SI units: "dim", "drop_Pa", "drop_numerical_uncertainty_Pa", "x_m", "gap_m",
+/// "wall_pressure_Pa", "mean_pressure_Pa" and more, as docs/simulation.md lists them.
+std::string flow_json(const SimulatedFlow& flow, const Effort& effort);
+/// {"error": {"where", "found", "mend"}}
+std::string error_json(const InputError& error);
+
+}  // namespace manoscope::navier_stokes

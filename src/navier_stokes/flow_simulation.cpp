@@ -1,0 +1,243 @@
+#include "flow_simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "duct_profile.hpp"
+#include "flow_mesh.hpp"
+#include "flow_solver.hpp"
+#include "manoscope/core/error.hpp"
+#include "vtu_file.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+constexpr const char* kWhere = "Navier-Stokes simulation";
+
+/// Units of a FlowProblem: lengths in the height, velocities in the mean one below it.
+struct Scales {
+  explicit Scales(const SimulatedChannel& given)
+      : length(given.channel.height.si()),
+        velocity(given.flow_rate.si() / (length * given.channel.width.si())),
+        pressure(given.fluid.viscosity.si() * velocity / length),
+        reynolds(given.fluid.density.si() * velocity * length / given.fluid.viscosity.si()) {}
+  double length, velocity, pressure, reynolds;
+};
+
+/// Number of cells of one mesh.
+struct Cells {
+  int along, up, across;
+
+  Cells coarser() const {
+    const auto fewer = [](int n) { return std::max(2, (2 * n + 1) / 3); };
+    return {fewer(along), fewer(up), fewer(across)};
+  }
+};
+
+Cells cells_of(const SimulatedChannel& given, const MeshOptions& mesh) {
+  const double gaps = given.channel.length / given.channel.height;
+  const bool plane = mesh.dim == 2;
+  const int least = plane ? 60 : 40, most = plane ? 600 : 200;
+  const int along =
+      std::clamp(static_cast<int>(std::lround((plane ? 1.35 : 0.7) * gaps)), least, most);
+  return {mesh.cells_along > 0 ? mesh.cells_along : along,
+          mesh.cells_up > 0 ? mesh.cells_up : (plane ? 8 : 4),
+          mesh.cells_across > 0 ? mesh.cells_across : 8};
+}
+
+void check(const SimulatedChannel& given, const Array1& stations, const MeshOptions& mesh) {
+  mesh.validate();
+  given.channel.validate(kWhere);
+  given.fluid.validate(kWhere);
+  if (!(given.flow_rate > FlowRate{}) || !std::isfinite(given.flow_rate.si())) {
+    throw InputError(kWhere, fmt::format("the flow rate is {:g} m3/s", given.flow_rate.si()),
+                     "Give a positive flow rate");
+  }
+  const double length = given.channel.length.si();
+  for (Index i = 0; i < stations.size(); ++i) {
+    if (stations[i] >= 0.0 && stations[i] <= length * (1.0 + 1e-12)) continue;
+    throw InputError(kWhere, fmt::format("station {} at x = {:g} m", i + 1, stations[i]),
+                     fmt::format("Choose stations from 0 to {:g} m", length));
+  }
+}
+
+/// Roof of the channel free of units: h/height at x/height, z/height.
+class ScaledGap {
+ public:
+  ScaledGap(const SimulatedChannel& given, int dim) : given_(&given), dim_(dim) {}
+
+  double operator()(double x, double z) const {
+    const double height = given_->channel.height.si(), length = given_->channel.length.si();
+    const double place = x * height;
+    // Both ends belong to the channel: its roof may start with a step in slope, not in height.
+    constexpr double kRounding = 1e-9;
+    if (place < -kRounding * length || place > (1.0 + kRounding) * length) return 1.0;
+    double zeta = given_->zeta(std::clamp(place, 0.0, length));
+    if (dim_ == 3) {
+      zeta *=
+          given_->wall_shape.value(std::min(1.0, 2.0 * z * height / given_->channel.width.si()));
+    }
+    const double gap = 1.0 + zeta / height;
+    if (!(gap > 0.0)) {
+      throw InputError(
+          kWhere,
+          fmt::format("the gap is {:.4g} um at x = {:.4g} mm", gap * height * 1e6, place * 1e3),
+          "The gap must stay open; check the sign of zeta and the height");
+    }
+    return gap;
+  }
+
+ private:
+  const SimulatedChannel* given_;
+  int dim_;
+};
+
+template <int dim>
+std::array<std::vector<double>, dim> edges(const SimulatedChannel& given, const Cells& cells) {
+  const double height = given.channel.height.si();
+  std::array<std::vector<double>, dim> result;
+  result[0] = edges_along(given.channel.length.si() / height, given.lead_in.si() / height,
+                          given.lead_out.si() / height, cells.along);
+  result[1] = edges_up(cells.up);
+  if constexpr (dim == 3) {
+    result[2] = edges_across(0.5 * given.channel.width.si() / height, cells.across);
+  }
+  return result;
+}
+
+/// Velocity at the inlet, up to a factor.
+template <int dim>
+std::function<Vector<dim>(const Vector<dim>&)> inlet_velocity(const SimulatedChannel& given,
+                                                              const FlowProblem<dim>& problem) {
+  if (given.inlet == flow::InletProfile::uniform) {
+    return [](const Vector<dim>&) { return Vector<dim>{1.0}; };
+  }
+  const double start = problem.edges[0].front();
+  const auto gap = [gap = problem.gap, start](double z) { return gap(start, z); };
+  if constexpr (dim == 2) {
+    return [h = gap(0.0)](const Vector<2>& place) {
+      const double t = place[1] / h;
+      return Vector<2>{t * (1.0 - t), 0.0};
+    };
+  } else {
+    const auto profile = duct_profile(problem.edges[2], problem.edges[1], gap, problem.order);
+    return [gap, profile](const Vector<3>& place) {
+      return Vector<3>{profile(place[1] / gap(place[2]), place[2]), 0.0, 0.0};
+    };
+  }
+}
+
+template <int dim>
+FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells, int order) {
+  FlowProblem<dim> problem;
+  problem.edges = edges<dim>(given, cells);
+  problem.gap = ScaledGap(given, dim);
+  problem.reynolds = Scales(given).reynolds;
+  problem.order = order;
+  problem.sides[SideName::inlet] = {SideCondition::velocity, inlet_velocity<dim>(given, problem)};
+  problem.sides[SideName::outlet].condition = SideCondition::open;
+  problem.inlet_flow = 1.0;
+  if constexpr (dim == 3) {
+    problem.sides[SideName::centre].condition = SideCondition::slip;
+    problem.inlet_flow = 0.5 * given.channel.width / given.channel.height;
+  }
+  if (given.lead_in_slips) problem.slip_before = 0.0;
+  return problem;
+}
+
+/// Pressures and shears at the stations, in SI, 0 mean pressure at the channel's end.
+struct Readings {
+  Array1 mean_pressure, wall_pressure, floor_pressure, wall_shear, floor_shear;
+  double drop = 0.0;
+};
+
+template <int dim>
+Readings read(const FlowSolver<dim>& solver, const SimulatedChannel& given,
+              const Array1& stations) {
+  const Scales scales(given);
+  const double length = given.channel.length.si() / scales.length;
+  const double outlet = solver.section(length).mean_pressure;
+  const Index n = stations.size();
+  Readings readings;
+  for (Array1* values : {&readings.mean_pressure, &readings.wall_pressure, &readings.floor_pressure,
+                         &readings.wall_shear, &readings.floor_shear}) {
+    values->resize(n);
+  }
+  for (Index i = 0; i < n; ++i) {
+    const FlowSection section = solver.section(stations[i] / scales.length);
+    readings.mean_pressure[i] = scales.pressure * (section.mean_pressure - outlet);
+    readings.wall_pressure[i] = scales.pressure * (section.roof_pressure - outlet);
+    readings.floor_pressure[i] = scales.pressure * (section.floor_pressure - outlet);
+    readings.wall_shear[i] = scales.pressure * section.roof_shear;
+    readings.floor_shear[i] = scales.pressure * section.floor_shear;
+  }
+  readings.drop = scales.pressure * (solver.section(0.0).mean_pressure - outlet);
+  return readings;
+}
+
+template <int dim>
+SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
+                          const MeshOptions& mesh, const std::string& vtu, const Monitor& monitor) {
+  const Cells fine = cells_of(given, mesh);
+  SimulatedFlow result;
+  Readings coarse_readings;
+  {
+    FlowSolver<dim> coarse(problem_of<dim>(given, fine.coarser(), mesh.order));
+    coarse.solve(monitor);
+    coarse_readings = read(coarse, given, stations);
+    result.n_newton_steps = coarse.n_newton_steps();
+    result.largest_residual = coarse.largest_residual();
+  }
+  monitor.report("flow on the coarser mesh", 1.0);
+  FlowSolver<dim> solver(problem_of<dim>(given, fine, mesh.order));
+  solver.solve(monitor);
+  monitor.report("flow on the finer mesh", 1.0);
+  const Readings readings = read(solver, given, stations);
+
+  // Half of Roache's bound 3 |d| / (r^2 - 1) for a ratio r = 3/2 of the meshes.
+  constexpr double kUncertainty = 1.2;
+  result.dim = dim;
+  result.x = stations;
+  result.gap = stations;
+  const ScaledGap gap(given, dim);
+  for (double& value : result.gap) {
+    value = given.channel.height.si() * gap(value / given.channel.height.si(), 0.0);
+  }
+  result.mean_pressure = readings.mean_pressure;
+  result.wall_pressure = readings.wall_pressure;
+  result.floor_pressure = readings.floor_pressure;
+  result.wall_shear = readings.wall_shear;
+  result.floor_shear = readings.floor_shear;
+  result.mean_pressure_uncertainty =
+      kUncertainty * (readings.mean_pressure - coarse_readings.mean_pressure).abs();
+  result.wall_pressure_uncertainty =
+      kUncertainty * (readings.wall_pressure - coarse_readings.wall_pressure).abs();
+  result.drop = readings.drop;
+  result.coarse_drop = coarse_readings.drop;
+  result.drop_uncertainty = kUncertainty * std::abs(readings.drop - coarse_readings.drop);
+  result.converged = result.drop_uncertainty <= mesh.tolerance * std::abs(result.drop);
+  result.n_unknowns = solver.n_unknowns();
+  result.n_newton_steps += solver.n_newton_steps();
+  result.largest_residual = std::max(result.largest_residual, solver.largest_residual());
+  if (!vtu.empty()) {
+    const Scales scales(given);
+    const double outlet = solver.section(given.channel.length.si() / scales.length).mean_pressure;
+    write_vtu<dim>(vtu, solver, edges<dim>(given, fine), mesh.order,
+              {scales.length, scales.velocity, scales.pressure, outlet});
+  }
+  return result;
+}
+
+}  // namespace
+
+SimulatedFlow simulate(const SimulatedChannel& channel, const Array1& stations,
+                       const MeshOptions& mesh, const std::string& vtu, const Monitor& monitor) {
+  check(channel, stations, mesh);
+  return mesh.dim == 2 ? simulate_in<2>(channel, stations, mesh, vtu, monitor)
+                       : simulate_in<3>(channel, stations, mesh, vtu, monitor);
+}
+
+}  // namespace manoscope::navier_stokes

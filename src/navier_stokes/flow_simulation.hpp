@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "manoscope/core/arrays.hpp"
+#include "manoscope/core/monitor.hpp"
+#include "manoscope/core/units.hpp"
+#include "manoscope/flow/channel.hpp"
+#include "manoscope/flow/marching.hpp"
+#include "manoscope/flow/roof.hpp"
+#include "simulation_options.hpp"
+
+namespace manoscope::navier_stokes {
+
+/// A channel whose wall stands still in a given shape, and the flow through it.
+///
+/// x runs from 0 to channel.length; the gap is height + zeta(x) g(2 z/w), in two dimensions height
+/// + zeta(x). Rigid straight ducts of gap `height` may lie before and behind.
+struct SimulatedChannel {
+  flow::Channel channel;
+  std::function<double(double x)> zeta;  ///< width-averaged deflection, m, for x in m
+  flow::WallShape wall_shape = flow::WallShape::parabola();  ///< g, in three dimensions
+  flow::Fluid fluid{1.0 * mPa_s, 998.0 * kg_per_m3};
+  FlowRate flow_rate{};
+  Length lead_in{}, lead_out{};
+  bool lead_in_slips = false;  ///< walls of the lead-in without friction: a uniform flow stays so
+  flow::InletProfile inlet = flow::InletProfile::developed;  ///< where the mesh begins
+};
+
+/// What Navier-Stokes makes of it. Arrays are (stations), SI, p = 0 in the mean at x = length.
+struct SimulatedFlow {
+  int dim = 2;
+  Array1 x, gap;          ///< gap at z = 0
+  Array1 mean_pressure;   ///< over the section
+  Array1 wall_pressure;   ///< on the roof at z = 0
+  Array1 floor_pressure;  ///< on the floor at z = 0
+  Array1 wall_shear;      ///< on the roof at z = 0, > 0 with the flow
+  Array1 floor_shear;     ///< on the floor at z = 0
+  Array1 mean_pressure_uncertainty, wall_pressure_uncertainty;  ///< numerical, k = 1
+  double drop = 0.0;              ///< Pa: mean pressure at x = 0 less that at x = length
+  double drop_uncertainty = 0.0;  ///< Pa: numerical, k = 1
+  double coarse_drop = 0.0;       ///< Pa: on the coarser mesh
+  bool converged = false;         ///< drop_uncertainty is within the tolerance asked for
+  int n_unknowns = 0;             ///< of the finer mesh
+  int n_newton_steps = 0;         ///< on both meshes
+  double largest_residual = 0.0;  ///< of all linear systems, relative
+};
+
+/// Solves the steady laminar flow of an incompressible fluid on two meshes.
+///
+/// FlowSolver on a mesh of the cells asked for, and on one with two thirds of them along each axis.
+/// The numerical uncertainty of a value follows from the difference d of both: with Richardson's
+/// extrapolation of order 2 an error of d/((3/2)^2 - 1), three times that as a 95 % bound (P. J.
+/// Roache, J. Fluids Eng. 116 (1994) 405, for two meshes), half of it as k = 1: u = 1.2 |d|. It
+/// covers convergence of first order as well (2 d = 1.7 u). On the reference flows of
+/// docs/simulation.md the error of the drop is within 2 u (tests).
+///
+/// Boundary conditions: where the mesh begins, a developed profile (2-D a parabola, 3-D that of
+/// the duct below the roof there) or a uniform one, v = w = 0, scaled to the flow rate; no slip;
+/// du/dn = p n where the mesh ends. In 3-D half the channel, symmetric about z = 0, is solved.
+///
+/// Validity: laminar, steady. Near x = 0 and x = length, where a roof leaves the rim with a slope,
+/// and at the edge of a uniform inlet, the pressure on the wall itself is not finite: values there
+/// depend on the mesh, as their uncertainties show; the section mean is finite.
+///
+/// @param stations  (n) x, m, in [0, length].
+/// @param vtu       where to write the fine mesh's velocity and pressure for ParaView; "" nowhere.
+/// @throws InputError for what is out of range, a gap that closes, or if no steady flow is found.
+SimulatedFlow simulate(const SimulatedChannel& channel, const Array1& stations,
+                       const MeshOptions& mesh, const std::string& vtu = "",
+                       const Monitor& monitor = {});
+
+}  // namespace manoscope::navier_stokes

@@ -1,0 +1,181 @@
+#include "flow_simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "manoscope/core/error.hpp"
+#include "manoscope/flow/duct_resistance.hpp"
+#include "tests/support/quiet_traps.hpp"
+#include "tests/support/reference_table.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+constexpr flow::Channel kChannel{15.5 * mm, 1.7 * mm, 175.0 * um};
+
+/// Width-averaged deflection of the reference flows.
+double bulge(double x) {
+  const double length = kChannel.length.si(), end = 0.6e-3;
+  return 33e-6 * (1.0 - 0.6 * x / length) * (1.0 - std::exp(-x / end)) *
+         (1.0 - std::exp(-(length - x) / end));
+}
+
+SimulatedChannel channel_at(double mL_per_minute) {
+  SimulatedChannel channel;
+  channel.channel = kChannel;
+  channel.zeta = bulge;
+  channel.flow_rate = mL_per_minute * mL_per_min;
+  return channel;
+}
+
+/// Rows of a shared reference flow, none where it is absent. Columns: x, gap, p on the roof, on the
+/// floor, in the middle, mean, and the references' own errors of the four.
+std::vector<std::vector<double>> reference(const std::string& name) {
+  const auto path = shared_file("data/flow/" + name);
+  if (!std::filesystem::exists(path)) return {};
+  return read_table(path);
+}
+
+Array1 stations_of(const std::vector<std::vector<double>>& rows) {
+  Array1 x(static_cast<Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) x[static_cast<Index>(i)] = rows[i][0];
+  return x;
+}
+
+/// Largest difference from the reference, of its largest pressure; values that the reference itself
+/// does not hold to a tenth of `tolerance` are left out.
+struct Agreement {
+  double mean = 0.0, wall = 0.0, drop = 0.0, drop_in_uncertainties = 0.0;
+};
+
+Agreement agreement(const SimulatedFlow& flow, const std::vector<std::vector<double>>& rows,
+                    double tolerance) {
+  double scale = 0.0;
+  for (const auto& row : rows) scale = std::max(scale, row[5]);
+  Agreement result;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const double mean = std::abs(flow.mean_pressure[k] - rows[i][5]) / scale;
+    const double wall = std::abs(flow.wall_pressure[k] - rows[i][2]) / scale;
+    if (rows[i][9] < 0.1 * tolerance * scale) result.mean = std::max(result.mean, mean);
+    if (rows[i][6] < 0.1 * tolerance * scale) result.wall = std::max(result.wall, wall);
+  }
+  const double drop = rows.front()[5] - rows.back()[5];
+  result.drop = flow.drop / drop - 1.0;
+  result.drop_in_uncertainties =
+      std::abs(flow.drop - drop) / (flow.drop_uncertainty + rows.front()[9]);
+  std::printf("[ figures  ] p mean %.2e, p wall %.2e of the largest; drop %+.2e, u %.2e, %.2f u\n",
+              result.mean, result.wall, result.drop, flow.drop_uncertainty / flow.drop,
+              result.drop_in_uncertainties);
+  return result;
+}
+
+class SimulateFlow : public testing::Test {
+  test::QuietTraps traps_;  // MUMPS scales rows by what may be 0 / 0
+};
+
+TEST_F(SimulateFlow, OfABulgedGapIsWithin005PercentOfIndependentSolutions) {
+  constexpr double kTolerance = 5e-4;
+  for (const auto& [name, flow_rate, lead_mm] : {std::tuple{"caseB0_Q5.csv", 5.0, 0.0},
+                                                 {"caseB0_Q70.csv", 70.0, 0.0},
+                                                 {"caseB1_Q5.csv", 5.0, 1.75},
+                                                 {"caseB1_Q70.csv", 70.0, 1.75}}) {
+    const auto rows = reference(name);
+    if (rows.empty()) GTEST_SKIP() << "no reference flow " << name;
+    SimulatedChannel channel = channel_at(flow_rate);
+    channel.lead_in = channel.lead_out = lead_mm * mm;
+    const SimulatedFlow flow = simulate(channel, stations_of(rows), MeshOptions{});
+    const Agreement found = agreement(flow, rows, kTolerance);
+    EXPECT_LT(found.mean, kTolerance) << name;
+    EXPECT_LT(found.wall, kTolerance) << name;
+    EXPECT_LT(std::abs(found.drop), kTolerance) << name;
+    EXPECT_LT(found.drop_in_uncertainties, 2.0) << name;
+    EXPECT_TRUE(flow.converged) << name;
+  }
+}
+
+TEST_F(SimulateFlow, OfAFlatGapIsExact) {
+  SimulatedChannel channel = channel_at(70.0);
+  channel.zeta = [](double) { return 0.0; };
+  const Array1 stations = Array1::LinSpaced(11, 0.0, kChannel.length.si());
+  const SimulatedFlow flow = simulate(channel, stations, MeshOptions{});
+  const double h = kChannel.height.si();
+  const double slope = 12.0 * channel.fluid.viscosity.si() * channel.flow_rate.si() /
+                       (kChannel.width.si() * h * h * h);
+  const Array1 exact = slope * (kChannel.length.si() - stations);
+  EXPECT_LT((flow.mean_pressure - exact).abs().maxCoeff(), 1e-8 * exact[0]);  // round-off
+  EXPECT_LT((flow.wall_pressure - exact).abs().maxCoeff(), 1e-8 * exact[0]);
+  EXPECT_LT((flow.wall_shear - 0.5 * h * slope).abs().maxCoeff(), 1e-8 * 0.5 * h * slope);
+  EXPECT_LT(flow.drop_uncertainty, 1e-8 * flow.drop);
+}
+
+TEST_F(SimulateFlow, DevelopsFromAUniformProfileAsAnIndependentSolutionDoes) {
+  for (const auto& [name, flow_rate] :
+       {std::pair{"caseA3_sliplead_Q5.csv", 5.0}, {"caseA3_sliplead_Q70.csv", 70.0}}) {
+    auto rows = reference(name);
+    if (rows.empty()) GTEST_SKIP() << "no reference flow " << name;
+    rows.erase(rows.begin());  // x = 0, the edge itself
+    SimulatedChannel channel = channel_at(flow_rate);
+    channel.zeta = [](double) { return 0.0; };
+    channel.inlet = flow::InletProfile::uniform;
+    channel.lead_in = 3.0 * kChannel.height;
+    channel.lead_in_slips = true;
+    const Agreement found =
+        agreement(simulate(channel, stations_of(rows), MeshOptions{}), rows, 1e-3);
+    EXPECT_LT(found.mean, 1e-3) << name;
+    EXPECT_LT(found.wall, 1e-3) << name;
+  }
+}
+
+TEST_F(SimulateFlow, InThreeDimensionsIsNearAnIndependentSolutionOnACoarseMesh) {
+  const auto rows = reference("caseD_Q5.csv");
+  if (rows.empty()) GTEST_SKIP() << "no reference flow caseD_Q5.csv";
+  MeshOptions mesh;
+  mesh.dim = 3;
+  mesh.cells_along = 30;
+  mesh.cells_up = 3;
+  mesh.cells_across = 5;
+  const SimulatedFlow flow = simulate(channel_at(5.0), stations_of(rows), mesh);
+  const Agreement found = agreement(flow, rows, 3e-3);
+  EXPECT_LT(found.mean, 3e-3);
+  EXPECT_LT(std::abs(found.drop), 2e-3);
+  EXPECT_LT(found.drop_in_uncertainties, 2.0);
+}
+
+/// Minutes: with --gtest_also_run_disabled_tests, or `make simulation`.
+TEST_F(SimulateFlow, DISABLED_InThreeDimensionsAgreesWithIndependentSolutions) {
+  for (const auto& [name, flow_rate] :
+       {std::pair{"caseD_Q5.csv", 5.0}, std::pair{"caseD_Q70.csv", 70.0}}) {
+    const auto rows = reference(name);
+    if (rows.empty()) GTEST_SKIP() << "no reference flow " << name;
+    MeshOptions mesh;
+    mesh.dim = 3;
+    const Agreement found =
+        agreement(simulate(channel_at(flow_rate), stations_of(rows), mesh), rows, 5e-3);
+    EXPECT_LT(found.mean, 5e-3) << name;
+    EXPECT_LT(std::abs(found.drop), 1e-3) << name;
+    EXPECT_LT(found.drop_in_uncertainties, 2.0) << name;
+  }
+}
+
+TEST_F(SimulateFlow, RefusesAGapThatCloses) {
+  SimulatedChannel channel = channel_at(5.0);
+  channel.zeta = [](double) { return -180e-6; };
+  EXPECT_THROW(simulate(channel, Array1::Zero(1), MeshOptions{}), InputError);
+}
+
+TEST_F(SimulateFlow, CallsNothingConvergedThatIsNot) {
+  MeshOptions mesh;
+  mesh.cells_along = 8;
+  mesh.cells_up = 2;
+  mesh.tolerance = 1e-4;
+  const SimulatedFlow flow = simulate(channel_at(70.0), Array1::Zero(1), mesh);
+  EXPECT_FALSE(flow.converged);
+  EXPECT_GT(flow.drop_uncertainty, 1e-4 * flow.drop);
+}
+
+}  // namespace
+}  // namespace manoscope::navier_stokes

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "manoscope/core/monitor.hpp"
+
+namespace manoscope::navier_stokes {
+
+template <int dim>
+using Vector = std::array<double, dim>;
+
+/// What holds on one side of the mesh.
+enum class SideCondition {
+  wall,      ///< no slip
+  velocity,  ///< a given velocity
+  slip,      ///< no flow through, no friction; the side must be a plane of constant x, y or z
+  open,      ///< do nothing: du/dn - p n = 0
+};
+
+template <int dim>
+struct Side {
+  SideCondition condition = SideCondition::wall;
+  std::function<Vector<dim>(const Vector<dim>& place)> velocity;  ///< for SideCondition::velocity
+};
+
+/// Sides in the order of FlowProblem::sides; centre and flank in three dimensions only.
+enum SideName : int { inlet = 0, outlet = 1, floor = 2, roof = 3, centre = 4, flank = 5 };
+
+/// Steady incompressible flow below a roof, free of units.
+///
+///   Re (u . grad) u - laplace u + grad p = f,  div u = 0
+///
+/// with lengths in some L, velocities in some U, p in eta U/L, Re = rho U L/eta, f in eta U/L^2.
+/// The mesh is a box of cells in x, t = y/h(x, z) and z.
+template <int dim>
+struct FlowProblem {
+  std::array<std::vector<double>, dim> edges;     ///< of the cells along x, t and z; ascending
+  std::function<double(double x, double z)> gap;  ///< h > 0; z is 0 in two dimensions
+  double reynolds = 0.0;
+  int order = 2;  ///< of the velocities, one more than that of p; 2 to 4
+  std::array<Side<dim>, 2 * dim> sides;
+  /// Walls slip upstream of this x; the gap must be constant there.
+  double slip_before = -std::numeric_limits<double>::infinity();
+  /// Flow through the inlet that its velocities are scaled to, in U L^(dim - 1).
+  std::optional<double> inlet_flow;
+  std::function<Vector<dim>(const Vector<dim>& place)> force;  ///< f; empty: none
+};
+
+/// Values at one place.
+template <int dim>
+struct FlowPoint {
+  Vector<dim> place{}, velocity{};
+  double pressure = 0.0;
+};
+
+/// Values over one section, free of units.
+struct FlowSection {
+  double mean_pressure = 0.0;   ///< over the area
+  double roof_pressure = 0.0;   ///< on the roof at z = 0
+  double floor_pressure = 0.0;  ///< on the floor at z = 0
+  double roof_shear = 0.0;      ///< along the roof at z = 0, in eta U/L, > 0 with the flow
+  double floor_shear = 0.0;     ///< along the floor at z = 0
+  double flow = 0.0;            ///< through the section
+};
+
+/// Taylor-Hood finite elements for a FlowProblem: Q_k velocities, Q_(k-1) pressure, cells mapped to
+/// the roof by polynomials of degree k.
+///
+/// Weak form: for all v, q that vanish where values are given,
+///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
+/// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
+/// Newton's iteration with the exact derivative, from Stokes flow to `reynolds` in steps that halve
+/// where it fails; every linear system is solved directly and checked (SparseDirect). Source: e.g.
+/// H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
+///
+/// Errors in the 2-norm fall with h^(k+1) in u and h^k in p where the solution is smooth (test for
+/// k = 2, 3). Pressure is unbounded in corners where given velocities clash or where the inlet
+/// meets a wall that turns there.
+template <int dim>
+class FlowSolver {
+ public:
+  /// @throws InputError for an order or edges out of range.
+  explicit FlowSolver(const FlowProblem<dim>& problem);
+  ~FlowSolver();
+  FlowSolver(FlowSolver&&) noexcept;
+  FlowSolver& operator=(FlowSolver&&) = delete;
+
+  /// @throws InputError if Newton's iteration finds no steady flow, InternalError from
+  ///         SparseDirect, Interrupted on request.
+  void solve(const Monitor& monitor = {});
+
+  int n_unknowns() const;
+  int n_newton_steps() const;       ///< linear systems solved
+  double largest_residual() const;  ///< worst |b - A x| / |b| among them
+
+  /// Values at (x, t[, z]) of the box.
+  FlowPoint<dim> at(const Vector<dim>& box) const;
+  /// Values over the section x; shears are the mean of both cells where x is an edge.
+  FlowSection section(double x) const;
+
+  struct Errors {
+    double velocity = 0.0, pressure = 0.0;
+  };
+  /// 2-norms of the difference to given fields; pressures are compared less their means.
+  Errors errors(const std::function<Vector<dim>(const Vector<dim>&)>& velocity,
+                const std::function<double(const Vector<dim>&)>& pressure) const;
+
+  struct Discrete;
+
+ private:
+  std::unique_ptr<Discrete> discrete_;
+};
+
+}  // namespace manoscope::navier_stokes

@@ -1,0 +1,202 @@
+#include "flow_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "duct_profile.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/flow/duct_resistance.hpp"
+#include "tests/support/quiet_traps.hpp"
+#include "tests/support/reference_table.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+std::vector<double> even(double low, double high, int n) {
+  std::vector<double> edges;
+  for (int i = 0; i <= n; ++i) edges.push_back(low + (high - low) * i / n);
+  return edges;
+}
+
+class FlowSolverTest : public testing::Test {
+  test::QuietTraps traps_;  // MUMPS scales rows by what may be 0 / 0
+};
+
+/// A flow made up: stream function f(x) g(y), with the force that it needs.
+///
+/// u = f g', v = -f' g; f' = f'' = 0 at x = 1 and p = 0 there, so that the open side is met.
+struct MadeUp {
+  double reynolds = 20.0;
+
+  static std::array<double, 4> along(double x) {  // f and its derivatives
+    const double s = 1.0 - x;
+    return {1.0 + s * s * s + 0.5 * s * s * s * s, -3.0 * s * s - 2.0 * s * s * s,
+            6.0 * s + 6.0 * s * s, -6.0 - 12.0 * s};
+  }
+  static std::array<double, 4> up(double y) {  // g and its derivatives
+    const double k = 1.3, a = k * y + 0.2;
+    return {std::sin(a), k * std::cos(a), -k * k * std::sin(a), -k * k * k * std::cos(a)};
+  }
+  static Vector<2> velocity(const Vector<2>& at) {
+    const auto f = along(at[0]), g = up(at[1]);
+    return {f[0] * g[1], -f[1] * g[0]};
+  }
+  static double pressure(const Vector<2>& at) {
+    return std::sin(std::numbers::pi * at[0]) * std::cos(at[1]);
+  }
+  Vector<2> force(const Vector<2>& at) const {
+    const auto f = along(at[0]), g = up(at[1]);
+    const double u = f[0] * g[1], v = -f[1] * g[0];
+    const double u_x = f[1] * g[1], u_y = f[0] * g[2], v_x = -f[2] * g[0], v_y = -f[1] * g[1];
+    const double u_laplace = f[2] * g[1] + f[0] * g[3], v_laplace = -f[3] * g[0] - f[1] * g[2];
+    const double k = std::numbers::pi;
+    return {reynolds * (u * u_x + v * u_y) - u_laplace + k * std::cos(k * at[0]) * std::cos(at[1]),
+            reynolds * (u * v_x + v * v_y) - v_laplace - std::sin(k * at[0]) * std::sin(at[1])};
+  }
+
+  FlowSolver<2>::Errors errors(int order, int n) const {
+    FlowProblem<2> problem;
+    problem.edges = {even(0.0, 1.0, n), even(0.0, 1.0, n)};
+    problem.gap = [](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); };
+    problem.reynolds = reynolds;
+    problem.order = order;
+    for (const int side : {SideName::inlet, SideName::floor, SideName::roof}) {
+      problem.sides[side] = {SideCondition::velocity, velocity};
+    }
+    problem.sides[SideName::outlet].condition = SideCondition::open;
+    problem.force = [this](const Vector<2>& at) { return force(at); };
+    FlowSolver<2> solver(problem);
+    solver.solve();
+    return solver.errors(velocity, pressure);
+  }
+};
+
+TEST_F(FlowSolverTest, ConvergesToAMadeUpFlowUnderACurvedRoofInTheOrderOfItsElements) {
+  const MadeUp flow;
+  for (const int order : {2, 3}) {
+    const auto coarse = flow.errors(order, 8), fine = flow.errors(order, 16);
+    EXPECT_NEAR(std::log2(coarse.velocity / fine.velocity), order + 1, 0.1) << order;
+    EXPECT_NEAR(std::log2(coarse.pressure / fine.pressure), order, 0.1) << order;
+    RecordProperty("velocity_order_" + std::to_string(order),
+                   std::to_string(std::log2(coarse.velocity / fine.velocity)));
+    RecordProperty("pressure_order_" + std::to_string(order),
+                   std::to_string(std::log2(coarse.pressure / fine.pressure)));
+  }
+}
+
+/// Cavity with a lid that moves along x.
+FlowSolver<2> cavity(double reynolds, int order, int n) {
+  std::vector<double> edges;
+  for (int i = 0; i <= n; ++i) edges.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * i / n));
+  FlowProblem<2> problem;
+  problem.edges = {edges, edges};
+  problem.gap = [](double, double) { return 1.0; };
+  problem.reynolds = reynolds;
+  problem.order = order;
+  problem.sides[SideName::roof] = {SideCondition::velocity, [](const Vector<2>&) {
+                                     return Vector<2>{1.0, 0.0};
+                                   }};
+  FlowSolver<2> solver(problem);
+  solver.solve();
+  return solver;
+}
+
+TEST_F(FlowSolverTest, TurnsInACavityAsAnIndependentSolutionDoes) {
+  const auto u_path = shared_file("data/flow/cavity_ours_u_x05.csv");
+  const auto v_path = shared_file("data/flow/cavity_ours_v_y05.csv");
+  if (!std::filesystem::exists(u_path)) GTEST_SKIP() << "no reference flow " << u_path;
+  for (const auto& [reynolds, column] : {std::pair{100.0, 1}, std::pair{400.0, 2}}) {
+    const FlowSolver<2> solver = cavity(reynolds, 3, 24);
+    for (const auto& row : read_table(u_path)) {
+      EXPECT_NEAR(solver.at({0.5, row[0]}).velocity[0], row[column], 1e-4) << reynolds;
+    }
+    for (const auto& row : read_table(v_path)) {
+      EXPECT_NEAR(solver.at({row[0], 0.5}).velocity[1], row[column], 1e-4) << reynolds;
+    }
+  }
+}
+
+TEST_F(FlowSolverTest, CarriesAParabolaWithoutError) {
+  FlowProblem<2> problem;
+  problem.edges = {even(-1.0, 2.0, 4), even(0.0, 1.0, 2)};
+  problem.gap = [](double, double) { return 1.0; };
+  problem.reynolds = 50.0;
+  problem.sides[SideName::inlet] = {SideCondition::velocity, [](const Vector<2>& at) {
+                                      return Vector<2>{at[1] * (1.0 - at[1]), 0.0};
+                                    }};
+  problem.sides[SideName::outlet].condition = SideCondition::open;
+  problem.inlet_flow = 1.0;
+  FlowSolver<2> solver(problem);
+  solver.solve();
+  for (const double x : {-1.0, 0.3, 1.25, 2.0}) {
+    const FlowSection section = solver.section(x);
+    EXPECT_NEAR(section.mean_pressure, 12.0 * (2.0 - x), 1e-9);  // round-off of the solve
+    EXPECT_NEAR(section.roof_pressure, 12.0 * (2.0 - x), 1e-9);
+    EXPECT_NEAR(section.floor_shear, 6.0, 1e-10);
+    EXPECT_NEAR(section.roof_shear, 6.0, 1e-10);
+    EXPECT_NEAR(section.flow, 1.0, 1e-11);
+  }
+}
+
+TEST_F(FlowSolverTest, PointsLieWhereTheBoxPutsThem) {
+  FlowProblem<3> problem;
+  problem.edges = {std::vector<double>{0.0, 0.5, 2.0}, {0.0, 0.3, 1.0}, {0.0, 1.0, 1.5, 4.0}};
+  problem.gap = [](double x, double z) { return 1.0 + 0.1 * x + 0.02 * x * z; };
+  const FlowSolver<3> solver(problem);
+  for (const Vector<3>& box : {Vector<3>{0.1, 0.9, 3.5}, {1.7, 0.2, 1.2}, {2.0, 1.0, 0.0}}) {
+    const Vector<3> place = solver.at(box).place;
+    EXPECT_NEAR(place[0], box[0], 1e-14);
+    EXPECT_NEAR(place[1], box[1] * problem.gap(box[0], box[2]), 1e-14);
+    EXPECT_NEAR(place[2], box[2], 1e-14);
+  }
+}
+
+TEST_F(FlowSolverTest, HoldsTheFlowOfADuctAgainstTheExactSeries) {
+  const double half_width = 2.0;  // width 4, height 1
+  const auto problem_with = [&](int n) {
+    FlowProblem<3> problem;
+    problem.edges = {even(0.0, 3.0, 2), even(0.0, 1.0, n), even(0.0, half_width, 2 * n)};
+    problem.gap = [](double, double) { return 1.0; };
+    problem.reynolds = 10.0;
+    const auto profile = duct_profile(
+        problem.edges[2], problem.edges[1], [](double) { return 1.0; }, problem.order);
+    problem.sides[SideName::inlet] = {SideCondition::velocity, [profile](const Vector<3>& at) {
+                                        return Vector<3>{profile(at[1], at[2]), 0.0, 0.0};
+                                      }};
+    problem.sides[SideName::outlet].condition = SideCondition::open;
+    problem.sides[SideName::centre].condition = SideCondition::slip;
+    problem.inlet_flow = half_width;
+    return problem;
+  };
+  // dp/dx = 12 / F of a mean velocity of 1.
+  const double exact = 12.0 / flow::duct_flow_factor(0.25, flow::DuctFormula::series);
+  double error = 0.0, coarse_error = 0.0;
+  for (const int n : {2, 4}) {
+    FlowSolver<3> solver(problem_with(n));
+    solver.solve();
+    coarse_error = error;
+    error =
+        (solver.section(0.0).mean_pressure - solver.section(3.0).mean_pressure) / 3.0 / exact - 1.0;
+    EXPECT_NEAR(solver.section(1.5).flow, half_width, 1e-9);  // what goes in comes along
+  }
+  EXPECT_LT(std::abs(error), 1e-3);
+  // Fourth order in the size of the cells, less at edges where two walls meet: 16 to 8.
+  EXPECT_GT(coarse_error / error, 8.0);
+}
+
+TEST_F(FlowSolverTest, RefusesElementsItDoesNotHave) {
+  FlowProblem<2> problem;
+  problem.edges = {even(0.0, 1.0, 2), even(0.0, 1.0, 2)};
+  problem.gap = [](double, double) { return 1.0; };
+  problem.order = 1;
+  EXPECT_THROW(FlowSolver<2>{problem}, InputError);
+  problem.order = 2;
+  problem.edges[0] = {0.0, 1.0, 1.0};
+  EXPECT_THROW(FlowSolver<2>{problem}, InputError);
+}
+
+}  // namespace
+}  // namespace manoscope::navier_stokes

@@ -1,0 +1,135 @@
+// manoscope-navier-stokes SHAPE.csv --height H --width W --flow-rate Q: one flow, as JSON.
+//
+// A program of its own: deal.II and MUMPS bring MPI and some 250 libraries, which `manoscope` does
+// not load. `manoscope simulate` starts it.
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cstdio>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "channel_shape.hpp"
+#include "flow_json.hpp"
+#include "flow_simulation.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/core/options.hpp"
+#include "manoscope/core/provenance.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+struct CommandLine {
+  std::string shape, vtu;
+  SimulationOptions options;
+};
+
+void help() {
+  fmt::print(
+      "usage: manoscope-navier-stokes SHAPE --height H --width W --flow-rate Q [OPTION "
+      "VALUE]...\n\n"
+      "Steady laminar flow below the wall whose deflection SHAPE tells (columns x, zeta), as "
+      "JSON.\n"
+      "  --vtu FILE  writes velocity and pressure for ParaView\n");
+  for (const OptionInfo& option : list_options(SimulationOptions{})) {
+    fmt::print("  --{} {}: {} [{}]\n", option.name, option.kind, option.help, option.value);
+  }
+}
+
+CommandLine read_words(const std::vector<std::string>& words) {
+  CommandLine line;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word.rfind("--", 0) != 0) {
+      if (!line.shape.empty()) {
+        throw InputError(word, "is a second shape", "Simulate one shape at a time");
+      }
+      line.shape = word;
+      continue;
+    }
+    if (i + 1 == words.size()) throw InputError(word, "has no value", "Give one behind it");
+    const std::string& value = words[++i];
+    if (word == "--vtu") {
+      line.vtu = value;
+    } else {
+      set_option(line.options, word.substr(2), value, word);
+    }
+  }
+  if (line.shape.empty()) {
+    throw InputError("command line", "no shape is named",
+                     "Name a table with the columns x and zeta; see --help");
+  }
+  line.options.validate();
+  return line;
+}
+
+SimulatedChannel channel_of(const ChannelShape& shape, const SimulationOptions& options) {
+  SimulatedChannel channel;
+  channel.channel = {Length::from_si(shape.length()), options.width, options.height};
+  channel.zeta = [&shape](double x) { return shape.value(shape.x()[0] + x); };
+  channel.fluid = {options.viscosity, options.density};
+  channel.flow_rate = options.flow_rate;
+  channel.lead_in = options.lead_in;
+  channel.lead_out = options.lead_out;
+  channel.lead_in_slips = options.lead_in_slips;
+  channel.inlet =
+      options.inlet == "uniform" ? flow::InletProfile::uniform : flow::InletProfile::developed;
+  return channel;
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;
+}
+
+int run(const std::vector<std::string>& words) {
+  const auto start = std::chrono::steady_clock::now();
+  const CommandLine line = read_words(words);
+  const ChannelShape shape = read_channel_shape(line.shape);
+  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, shape.length());
+  SimulatedFlow flow =
+      simulate(channel_of(shape, line.options), stations, line.options.mesh, line.vtu);
+  flow.x += shape.x()[0];
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const std::string text = flow_json(flow, {taken.count(), peak_megabytes()});
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) {
+    throw InputError("standard output", "cannot be written",
+                     "Check the disk or the pipe it goes to");
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace manoscope::navier_stokes
+
+int main(int argc, char** argv) {
+  using namespace manoscope;
+  constexpr int kOurFault = 1, kUsersFault = 2;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  for (const std::string& word : words) {
+    if (word == "--help" || word == "-h") {
+      navier_stokes::help();
+      return 0;
+    }
+    if (word == "--version") {
+      fmt::print("manoscope-navier-stokes {} ({})\n", program_version(), source_revision());
+      return 0;
+    }
+  }
+  try {
+    return navier_stokes::run(words);
+  } catch (const InputError& error) {
+    fmt::print("{}", navier_stokes::error_json(error));
+    fmt::print(stderr, "manoscope-navier-stokes: error: {}\n", error.what());
+    return kUsersFault;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "manoscope-navier-stokes: out of memory: take fewer cells\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "manoscope-navier-stokes: fault of the program: {}\n", error.what());
+  }
+  return kOurFault;
+}

@@ -1,0 +1,66 @@
+#include "simulation_options.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+void check_integer(const char* name, int value, int least, int most) {
+  if (value >= least && value <= most) return;
+  throw InputError(fmt::format("--{}", name), fmt::format("{} is out of range", value),
+                   fmt::format("Give a number from {} to {}", least, most));
+}
+
+void check_positive(const char* name, double value, const char* example) {
+  if (value > 0.0 && std::isfinite(value)) return;
+  throw InputError(
+      fmt::format("--{}", name),
+      value == 0.0 ? std::string("is missing") : fmt::format("{:g} is not positive", value),
+      fmt::format("Give it with its unit, e.g. --{} \"{}\"", name, example));
+}
+
+void check_cells(const char* name, int value, int least) {
+  constexpr int kMostCells = 10000;
+  if (value != 0) check_integer(name, value, least, kMostCells);
+}
+
+}  // namespace
+
+void MeshOptions::validate() const {
+  check_integer("dim", dim, 2, 3);
+  check_integer("order", order, 2, 4);
+  check_cells("cells-along", cells_along, 6);
+  check_cells("cells-up", cells_up, 2);
+  check_cells("cells-across", cells_across, 2);
+  if (!(tolerance > 0.0 && tolerance < 1.0)) {
+    throw InputError("--tolerance", fmt::format("{:g} is out of range", tolerance),
+                     "Give a part of the drop between 0 and 1, e.g. 0.005");
+  }
+}
+
+void SimulationOptions::validate() const {
+  check_positive("height", height.si(), "175 um");
+  check_positive("width", width.si(), "1.7 mm");
+  check_positive("flow-rate", flow_rate.si(), "70 mL/min");
+  check_positive("viscosity", viscosity.si(), "1 mPa s");
+  check_positive("density", density.si(), "998 kg/m3");
+  if (inlet != "developed" && inlet != "uniform") {
+    throw InputError("--inlet", fmt::format("\"{}\" is no profile", inlet),
+                     "Choose developed or uniform");
+  }
+  for (const auto& [name, length] :
+       {std::pair{"lead-in", lead_in}, std::pair{"lead-out", lead_out}}) {
+    if (length >= Length{} && std::isfinite(length.si())) continue;
+    throw InputError(fmt::format("--{}", name), fmt::format("{:g} m is out of range", length.si()),
+                     "Give a length, or 0um for none");
+  }
+  constexpr int kMostStations = 100000;
+  check_integer("stations", stations, 2, kMostStations);
+  mesh.validate();
+}
+
+}  // namespace manoscope::navier_stokes

@@ -1,0 +1,99 @@
+"""manoscope simulate: Navier-Stokes in a given shape."""
+
+import csv
+import json
+import math
+import pathlib
+import shutil
+import subprocess
+import unittest
+
+from support import PROGRAM, Folder, main, run
+
+SOLVER = pathlib.Path(PROGRAM).parent / "manoscope-navier-stokes"
+CHANNEL = ("--height", "175um", "--width", "1.7mm", "--flow-rate", "5mL/min")
+
+
+class Simulate(Folder):
+    def shape(self, zeta_um=33.0):
+        """A bulge, as a table in millimetres and micrometres."""
+        path = self.folder / "shape.csv"
+        length = 15.5
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("x [mm],zeta [um]\n")
+            for i in range(201):
+                x = length * i / 200
+                zeta = (zeta_um * (1 - 0.6 * x / length) * (1 - math.exp(-x / 0.6))
+                        * (1 - math.exp(-(length - x) / 0.6)))
+                file.write(f"{x:.6f},{zeta:.9f}\n")
+        return path
+
+    def test_what_is_missing_or_wrong_is_said(self):
+        shape = self.shape()
+        for arguments, text in (
+                ((), "--shape"),
+                (("--shape", shape), "--height"),
+                (("--shape", shape, "--height", "175"), "unit"),
+                (("--shape", shape, *CHANNEL, "--dim", "4"), "--dim"),
+                (("--shape", shape, *CHANNEL, "--inlet", "slanted"), "developed"),
+        ):
+            done = run("simulate", *arguments, check_code=2)
+            self.assertEqual(done.stdout, "")
+            self.assertIn(text, done.stderr)
+
+    def test_without_the_solver_it_says_what_to_install(self):
+        program = self.folder / "manoscope"
+        shutil.copy(PROGRAM, program)
+        program.chmod(0o755)
+        done = subprocess.run([program, "simulate", "--shape", self.shape(), *CHANNEL], text=True,
+                              capture_output=True, env={"PATH": "/nowhere"}, timeout=60,
+                              check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("install_packages.sh", done.stderr)
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    def test_a_plane_flow_is_solved(self):
+        table, picture = self.folder / "p.csv", self.folder / "flow.vtu"
+        done = run("simulate", "--shape", self.shape(), *CHANNEL, "--json", "-o", table,
+                   "--vtu", picture, "--stations", "11", check_code=0)
+        flow = json.loads(done.stdout)
+        self.assertEqual(flow["dim"], 2)
+        self.assertTrue(flow["converged"])
+        # An independent solution of this shape has 1212.455 Pa.
+        self.assertAlmostEqual(flow["drop_Pa"] / 1212.455, 1, delta=5e-4)
+        self.assertLess(flow["drop_numerical_uncertainty_Pa"], 1e-3 * flow["drop_Pa"])
+        self.assertEqual(len(flow["x_m"]), 11)
+        self.assertAlmostEqual(flow["mean_pressure_Pa"][0], flow["drop_Pa"], places=6)
+        self.assertAlmostEqual(flow["mean_pressure_Pa"][-1], 0, places=6)
+        self.assertGreater(flow["wall_shear_Pa"][5], 0)
+        for name in ("unknowns", "seconds", "peak_MB"):
+            self.assertGreater(flow[name], 0)
+        with open(table, encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 11)
+        self.assertAlmostEqual(float(rows[3]["wall_pressure_Pa"]), flow["wall_pressure_Pa"][3],
+                               places=4)
+        self.assertIn(b"UnstructuredGrid", picture.read_bytes()[:400])
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    def test_the_terminal_shows_drop_and_stations(self):
+        arguments = ("simulate", "--shape", self.shape(), *CHANNEL, "--cells-along", "20",
+                     "--cells-up", "3")
+        done = run(*arguments, check_code=0)
+        self.assertIn("Navier-Stokes, 2-D: drop 12", done.stdout)
+        self.assertIn("p wall [Pa]", done.stdout)
+        short = run(*arguments, "--quiet", check_code=0)
+        self.assertEqual(len(short.stdout.splitlines()), 1)
+        doubtful = run(*arguments, "--tolerance", "1e-9", check_code=0)
+        self.assertIn("NOT CONVERGED", doubtful.stdout)
+        self.assertIn("--cells-along", doubtful.stderr)
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    def test_a_gap_that_closes_is_the_users_fault(self):
+        done = run("simulate", "--shape", self.shape(-300.0), *CHANNEL, check_code=2)
+        self.assertIn("gap", done.stderr)
+        self.assertEqual(done.stdout, "")
+
+
+if __name__ == "__main__":
+    main()
