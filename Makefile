@@ -46,7 +46,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage goals planning flow-models simulation simulation-check check format format-check layers \
         scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -119,6 +119,17 @@ flow-models: ## errors of the flow models in S1 to S5: figure and table of docs/
 	@cmake --build $(BUILD) -j $(JOBS) --target model_errors
 	$(BUILD)/model_errors $(BUILD)/model_errors.csv
 	/usr/bin/python3 tools/model_error_figure.py $(BUILD)/model_errors.csv docs
+
+simulation: ## the Navier-Stokes solver, build/manoscope-navier-stokes; installs deal.II, 1.7 GB
+	@$(install) build libraries navier-stokes
+	@$(configure) $(without_tests)
+	@cmake --build $(BUILD) -j $(JOBS) --target manoscope manoscope-navier-stokes
+
+simulation-check: ## its flows against independent solutions, in three dimensions on fine meshes: minutes
+	@$(install) build libraries tests navier-stokes
+	@$(configure) -DMANOSCOPE_TESTS=ON
+	@cmake --build $(BUILD) -j $(JOBS) --target navier_stokes_test
+	$(BUILD)/tests/navier_stokes_test --gtest_also_run_disabled_tests
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages of packages/debian.txt that this machine lacks.
 #
-#   tools/install_packages.sh [--list] [GROUP...]     (no GROUP: all of them)
+#   tools/install_packages.sh [--list] [GROUP...]     (no GROUP: all but the optional ones)
 #
 # Where nothing is missing it says nothing, calls no package manager and needs no privileges.
 # Otherwise it installs what is missing as root, or through sudo.
@@ -20,7 +20,7 @@ usage() {
 usage: tools/install_packages.sh [--list] [GROUP...]
 
 Installs the packages of packages/debian.txt that are missing.
-  GROUP     a group of that file; without one, every group
+  GROUP     a group of that file; without one, every group that is not optional
   --list    print the packages of the groups, one a line, and install nothing
   --help    this text
 TEXT
@@ -28,7 +28,12 @@ TEXT
 
 # The names of all groups, one a line.
 groups_of_list() {
-  sed -n 's/^\[\([a-z]*\)\].*/\1/p' "$package_list"
+  sed -n 's/^\[\([a-z-]*\)\].*/\1/p' "$package_list"
+}
+
+# Those that are taken without being named.
+ordinary_groups() {
+  sed -n '/^\[[a-z-]*\][[:space:]]*optional/d; s/^\[\([a-z-]*\)\].*/\1/p' "$package_list"
 }
 
 # The packages of the groups given as arguments, one a line, each once.
@@ -85,7 +90,9 @@ main() {
     esac
   done
   # No process substitution here: a bare chroot may have no /dev/fd.
-  if [[ ${#groups[@]} -eq 0 ]]; then read -r -a groups <<<"$known"; fi
+  if [[ ${#groups[@]} -eq 0 ]]; then
+    read -r -a groups <<<"$(ordinary_groups | tr '\n' ' ')"
+  fi
 
   local packages missing
   read -r -a packages <<<"$(packages_of "${groups[@]}" | tr '\n' ' ')"

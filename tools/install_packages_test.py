@@ -22,6 +22,8 @@ g++   # compiler
 [tests]
 libgtest-dev
 make
+[large-ones] optional  # only by name
+libdeal.ii-dev
 """
 
 
@@ -71,6 +73,10 @@ class InstallPackages(unittest.TestCase):
         self.assertEqual(self.run_script("--list").stdout.split(), ["make", "g++", "libgtest-dev"])
         self.assertEqual(self.run_script("--list", "tests").stdout.split(), ["libgtest-dev", "make"])
         self.assertEqual(self.calls(), [])
+
+    def test_an_optional_group_is_taken_by_name_alone(self):
+        self.assertNotIn("libdeal.ii-dev", self.run_script("--list").stdout)
+        self.assertEqual(self.run_script("--list", "large-ones").stdout.split(), ["libdeal.ii-dev"])
 
     def test_says_and_does_nothing_where_nothing_is_missing(self):
         self.installed("make", "g++", "libgtest-dev")

@@ -27,13 +27,13 @@ fs::path find_solver() {
   if (fs::is_regular_file(beside, error) && ::access(beside.c_str(), X_OK) == 0) return beside;
   if (const auto found = find_program(kProgram)) return *found;
   throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
-                   "It is built with manoscope where deal.II is: run tools/install_packages.sh "
-                   "navierstokes, then make simulation");
+                   "Run make simulation, which installs deal.II (tools/install_packages.sh "
+                   "navier-stokes) and builds it beside manoscope");
 }
 
 /// What the solver says, as JSON.
 std::string ask_solver(const std::vector<std::string>& words, const Monitor& monitor) {
-  constexpr double kLongest = 30.0 * 86400.0;          // s: whoever waits stops it with Ctrl-C
+  constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
   constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
   ChildProcess::Options options;
   options.wall_seconds = kLongest;
@@ -47,13 +47,14 @@ std::string ask_solver(const std::vector<std::string>& words, const Monitor& mon
   monitor.checkpoint();
   if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
   if (end.succeeded()) return answer;
-  throw InternalError(end.signal == SIGKILL
-                          ? fmt::format("{} was killed: the machine may be short of memory; take "
-                                        "fewer cells",
-                                        kProgram)
-                          : fmt::format("{} ended with exit code {}, signal {}; run it by itself to "
-                                        "see its message",
-                                        kProgram, end.exit_code, end.signal));
+  throw InternalError(
+      end.signal == SIGKILL
+          ? fmt::format("{} was killed: the machine may be short of memory; take "
+                        "fewer cells",
+                        kProgram)
+          : fmt::format("{} ended with exit code {}, signal {}; run it by itself to "
+                        "see its message",
+                        kProgram, end.exit_code, end.signal));
 }
 
 }  // namespace
@@ -64,10 +65,11 @@ void add_simulate(Program& program) {
     navier_stokes::SimulationOptions options;
   };
   auto args = std::make_shared<Args>();
-  Command command = program.command("simulate", "Solve the Navier-Stokes equations in a given shape");
-  command.option("--shape", args->shape,
-                 "table with the columns x and zeta, the width-averaged deflection, with their units",
-                 true);
+  Command command =
+      program.command("simulate", "Solve the Navier-Stokes equations in a given shape");
+  command.option(
+      "--shape", args->shape,
+      "table with the columns x and zeta, the width-averaged deflection, with their units", true);
   command.option("-o,--output", args->out, "writes p(x) and wall shear to a CSV file", false);
   command.option("--vtu", args->vtu, "writes velocity and pressure for ParaView", false);
   command.options(args->options, "Simulation");

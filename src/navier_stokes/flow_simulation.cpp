@@ -197,8 +197,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
   monitor.report("flow on the finer mesh", 1.0);
   const Readings readings = read(solver, given, stations);
 
-  // Half of Roache's bound 3 |d| / (r^2 - 1) for a ratio r = 3/2 of the meshes.
-  constexpr double kUncertainty = 1.2;
+  constexpr double kMeshRatio = 1.5, kUncertainty = 1.0 / (kMeshRatio - 1.0);
   result.dim = dim;
   result.x = stations;
   result.gap = stations;
@@ -226,7 +225,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
     const Scales scales(given);
     const double outlet = solver.section(given.channel.length.si() / scales.length).mean_pressure;
     write_vtu<dim>(vtu, solver, edges<dim>(given, fine), mesh.order,
-              {scales.length, scales.velocity, scales.pressure, outlet});
+                   {scales.length, scales.velocity, scales.pressure, outlet});
   }
   return result;
 }

@@ -67,9 +67,6 @@ Agreement agreement(const SimulatedFlow& flow, const std::vector<std::vector<dou
   result.drop = flow.drop / drop - 1.0;
   result.drop_in_uncertainties =
       std::abs(flow.drop - drop) / (flow.drop_uncertainty + rows.front()[9]);
-  std::printf("[ figures  ] p mean %.2e, p wall %.2e of the largest; drop %+.2e, u %.2e, %.2f u\n",
-              result.mean, result.wall, result.drop, flow.drop_uncertainty / flow.drop,
-              result.drop_in_uncertainties);
   return result;
 }
 
@@ -145,7 +142,7 @@ TEST_F(SimulateFlow, InThreeDimensionsIsNearAnIndependentSolutionOnACoarseMesh) 
   EXPECT_LT(found.drop_in_uncertainties, 2.0);
 }
 
-/// Minutes: with --gtest_also_run_disabled_tests, or `make simulation`.
+/// Minutes: `make simulation-check` runs it.
 TEST_F(SimulateFlow, DISABLED_InThreeDimensionsAgreesWithIndependentSolutions) {
   for (const auto& [name, flow_rate] :
        {std::pair{"caseD_Q5.csv", 5.0}, std::pair{"caseD_Q70.csv", 70.0}}) {

@@ -76,18 +76,15 @@ struct MadeUp {
 
 TEST_F(FlowSolverTest, ConvergesToAMadeUpFlowUnderACurvedRoofInTheOrderOfItsElements) {
   const MadeUp flow;
-  for (const int order : {2, 3}) {
-    const auto coarse = flow.errors(order, 8), fine = flow.errors(order, 16);
+  // The pressure of Q2-Q1 converges faster at first: its order shows on fine meshes.
+  for (const auto& [order, n] : {std::pair{2, 32}, std::pair{3, 8}}) {
+    const auto coarse = flow.errors(order, n), fine = flow.errors(order, 2 * n);
     EXPECT_NEAR(std::log2(coarse.velocity / fine.velocity), order + 1, 0.1) << order;
     EXPECT_NEAR(std::log2(coarse.pressure / fine.pressure), order, 0.1) << order;
-    RecordProperty("velocity_order_" + std::to_string(order),
-                   std::to_string(std::log2(coarse.velocity / fine.velocity)));
-    RecordProperty("pressure_order_" + std::to_string(order),
-                   std::to_string(std::log2(coarse.pressure / fine.pressure)));
   }
 }
 
-/// Cavity with a lid that moves along x.
+/// Cavity with a lid that moves along x between corners that stand still.
 FlowSolver<2> cavity(double reynolds, int order, int n) {
   std::vector<double> edges;
   for (int i = 0; i <= n; ++i) edges.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * i / n));
@@ -109,7 +106,8 @@ TEST_F(FlowSolverTest, TurnsInACavityAsAnIndependentSolutionDoes) {
   const auto v_path = shared_file("data/flow/cavity_ours_v_y05.csv");
   if (!std::filesystem::exists(u_path)) GTEST_SKIP() << "no reference flow " << u_path;
   for (const auto& [reynolds, column] : {std::pair{100.0, 1}, std::pair{400.0, 2}}) {
-    const FlowSolver<2> solver = cavity(reynolds, 3, 24);
+    // The corners are resolved to 1/n^2: 40 cells leave 7e-5, 24 cells 1.8e-4.
+    const FlowSolver<2> solver = cavity(reynolds, 3, 40);
     for (const auto& row : read_table(u_path)) {
       EXPECT_NEAR(solver.at({0.5, row[0]}).velocity[0], row[column], 1e-4) << reynolds;
     }
