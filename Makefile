@@ -194,7 +194,7 @@ clean: ## remove the build folders and the demo's output
 	  if [ -f "$$folder/CMakeCache.txt" ]; then rm -rf "$$folder"; fi; done
 	@rm -rf manoscope-demo
 
-install-packages: ## install every package of packages/debian.txt that is missing, deal.II among them
+install-packages: ## install every package of packages/debian.txt that is missing
 	@tools/install_packages.sh
 
 help: ## this list

@@ -23,7 +23,7 @@ constexpr const char* kProgram = "manoscope-navier-stokes";
 /// The solver beside this program, or on PATH.
 fs::path find_solver() {
   std::error_code error;
-  const fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
+  fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
   if (fs::is_regular_file(beside, error) && ::access(beside.c_str(), X_OK) == 0) return beside;
   if (const auto found = find_program(kProgram)) return *found;
   throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
@@ -42,7 +42,7 @@ std::string ask_solver(const std::vector<std::string>& words, const Monitor& mon
   options.stop_requested = monitor.stop_requested;
   auto solver = ChildProcess::start(words, options);
   if (!solver) throw InputError(words.front(), "cannot be started", "Check its permissions");
-  const std::string answer = solver->read_all(kLargest);
+  std::string answer = solver->read_all(kLargest);
   const ChildEnd end = solver->wait();
   monitor.checkpoint();
   if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
