@@ -46,7 +46,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage goals planning flow-models simulation simulation-check check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models simulation simulation-check check format format-check layers \
         scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
         install-packages help
 
