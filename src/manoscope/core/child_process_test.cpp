@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/time.h>
 
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 namespace manoscope {
@@ -73,6 +75,24 @@ TEST(ChildProcess, AProgramThatIsNotThereIsNoFault) {
   EXPECT_FALSE(ChildProcess::start({"/no/such/program"}, {}));
   EXPECT_FALSE(find_program("manoscope-no-such-program"));
   EXPECT_TRUE(find_program("sh"));
+}
+
+TEST(ChildProcess, EndsWhenASignalComesAndAStopIsRequested) {
+  // One signal that nobody wants a stop for, then one that is meant.
+  static volatile std::sig_atomic_t n_signals = 0;
+  const auto before = std::signal(SIGALRM, [](int) { n_signals = n_signals + 1; });
+  ChildProcess::Options options;
+  options.stop_requested = [] { return n_signals >= 2; };
+  const auto start = Clock::now();
+  auto child = shell("sleep 15", options);
+  const itimerval every{{0, 100000}, {0, 100000}};
+  setitimer(ITIMER_REAL, &every, nullptr);
+  EXPECT_EQ(child->read_all(10), "");
+  const itimerval never{};
+  setitimer(ITIMER_REAL, &never, nullptr);
+  std::signal(SIGALRM, before);
+  EXPECT_EQ(child->wait().signal, SIGKILL);
+  EXPECT_LT(seconds_since(start), 14.0);
 }
 
 TEST(ChildProcess, SeveralAtOnceDoNotHoldEachOthersPipes) {
