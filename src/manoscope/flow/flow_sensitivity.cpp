@@ -75,8 +75,8 @@ FlowSensitivity sensitivity(FlowModel model, const FlowCase& flow, const Section
   const Array1& pressure = result.modelled.pressure;
   const FlowModel local = marches(model) ? FlowModel::momentum : model;
   result.by_zeta = by_zeta(local, flow, family);
-  // A march on sections costs as much as twenty in the plane, whose friction and inertia are the
-  // same within its stated error.
+  // A march on sections costs as much as four in the plane, whose friction and inertia are nearly
+  // the same.
   const FlowModel quick = model == FlowModel::section_march ? FlowModel::plane_march : model;
   const Array1 here = quick == model ? pressure : solve_by(quick, flow, family).pressure;
 

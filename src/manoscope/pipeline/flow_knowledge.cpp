@@ -132,7 +132,8 @@ std::optional<flow::WallShape> shape_across(const maps::ResponsePicture& respons
 
 FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& reduced,
                         const calibration::ConstitutiveCurves& curves,
-                        const std::vector<FlowRun>& runs, Index n_stations) {
+                        const std::vector<FlowRun>& runs, Index n_stations,
+                        double largest_extrapolation) {
   FlowKnowledge known;
   known.setup.channel = channel_of(experiment);
   known.setup.fluid = fluid_of(experiment);
@@ -149,8 +150,7 @@ FlowKnowledge know_flow(const Experiment& experiment, const ReducedExperiment& r
 
   known.stations = graded_stations(curves.x, known.setup.channel, n_stations);
   known.curves = inversion::thinned(curves, known.stations);
-  const validation::CurvedWall wall(known.curves, experiment.channel.length,
-                                    validation::PredictFlowOptions{}.largest_extrapolation);
+  const validation::CurvedWall wall(known.curves, experiment.channel.length, largest_extrapolation);
   double least = wall.least(), greatest = wall.greatest();
   for (const FlowRun& run : runs) {
     for (Index ix = 0; ix < run.profile.x.size(); ++ix) {

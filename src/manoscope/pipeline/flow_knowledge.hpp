@@ -34,10 +34,12 @@ struct FlowKnowledge {
 /// Section shape from the picture of the wall's response, inlet and uncertainties from the
 /// experiment, tables of sections for every deflection that the curves and the runs hold.
 /// @param n_stations  about how many there shall be along the channel.
+/// @param largest_extrapolation  of the curves, PredictFlowOptions: the tables reach as far.
 /// @throws InputError if the gap closes or reaches the width somewhere.
 FlowKnowledge know_flow(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
                         const calibration::ConstitutiveCurves& curves,
-                        const std::vector<FlowRun>& runs, Index n_stations);
+                        const std::vector<FlowRun>& runs, Index n_stations,
+                        double largest_extrapolation);
 
 /// Shape of the wall across the channel: even polynomial through the mean of the middle half of
 /// the picture. None where the picture is too coarse or does not show a wall that gives way.

@@ -132,8 +132,9 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
                      "Give a positive flow rate, with x along the flow");
   }
   const Calibration calibration = calibrate(experiment, measure, n_threads, monitor);
-  const FlowKnowledge known = know_flow(experiment, calibration.reduced, calibration.curves,
-                                        calibration.runs, measure.flow.flow_stations);
+  const FlowKnowledge known =
+      know_flow(experiment, calibration.reduced, calibration.curves, calibration.runs,
+                measure.flow.flow_stations, options.coupling.largest_extrapolation);
   const FromRuns runs =
       read_what_is_missing(experiment, calibration, known, options, measure, n_threads, monitor);
   Predictions result;

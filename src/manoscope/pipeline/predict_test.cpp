@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "manoscope/pipeline/test_experiment.hpp"
@@ -63,6 +64,23 @@ TEST(Predict, TakesModelAndOutletAsGiven) {
   EXPECT_EQ(one.pressure[one.pressure.size() - 1], 500.0);
   EXPECT_NEAR(one.uncertainty.standard()[one.pressure.size() - 1], 50.0, 1e-6);
   EXPECT_EQ(found.outlet, "as given");
+}
+
+TEST(Predict, GoesAsFarBeyondTheCalibrationAsItIsTold) {
+  double highest = 0.0;
+  for (const auto& level : read_once().hydrostatic) {
+    highest = std::max(highest, level.pressure.si());
+  }
+  PredictOptions options;
+  options.model = "creeping";
+  options.outlet_pressure = Pressure::from_si(1.2 * highest);
+  options.coupling.healing_length = Length{};
+  EXPECT_THROW(predict(read_once(), {1.0 * mL_per_min}, options, local()), InputError);
+  options.coupling.largest_extrapolation = 0.3;
+  const auto flow = predict(read_once(), {1.0 * mL_per_min}, options, local()).flows[0];
+  const Index middle = flow.x.size() / 2;
+  EXPECT_NE(flow.flags[middle] & validation::PredictionFlag::out_of_calibration, 0);
+  EXPECT_GT(flow.pressure[middle], 1.2 * highest);
 }
 
 TEST(Predict, RefusesWhatIsNoFlowRate) {

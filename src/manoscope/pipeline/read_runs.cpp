@@ -142,7 +142,8 @@ std::optional<FlowKnowledge> find_flow(const Experiment& experiment, const Calib
   if (calibration.runs.empty() || !options.flow.flow_models) return std::nullopt;
   try {
     FlowKnowledge known = know_flow(experiment, calibration.reduced, calibration.curves,
-                                    calibration.runs, options.flow.flow_stations);
+                                    calibration.runs, options.flow.flow_stations,
+                                    validation::PredictFlowOptions{}.largest_extrapolation);
     known.healing_length = healing_length(calibration);
     return known;
   } catch (const InputError& error) {
