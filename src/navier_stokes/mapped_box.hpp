@@ -5,10 +5,39 @@
 #include <deal.II/grid/tria.h>
 
 #include <array>
+#include <exception>
 #include <functional>
+#include <mutex>
 #include <vector>
 
 namespace manoscope::navier_stokes {
+
+/// Keeps, of the exceptions that several threads meet, that of the lowest place (x, z).
+class FirstFault {
+ public:
+  using Place = std::array<double, 2>;
+
+  template <class Work>
+  void watch(const Place& place, const Work& work) {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (fault_ && !(place < place_)) return;
+      fault_ = std::current_exception();
+      place_ = place;
+    }
+  }
+  /// Throws what was kept, if anything was.
+  void rethrow() const {
+    if (fault_) std::rethrow_exception(fault_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr fault_;
+  Place place_{};
+};
 
 /// Box of cells below a roof: (x, t[, z]) is carried to (x, t h(x, z)[, z]).
 ///
@@ -18,7 +47,8 @@ namespace manoscope::navier_stokes {
 template <int dim>
 struct MappedBox {
   /// @param edges  positions of the cells' ends along x, t and z; ascending, at least two each.
-  /// @param gap    h(x, z); z is 0 in two dimensions.
+  /// @param gap    h(x, z); z is 0 in two dimensions. Asked from several threads at once.
+  /// @throws what `gap` throws at the lowest place.
   MappedBox(const std::array<std::vector<double>, dim>& edges,
             const std::function<double(double x, double z)>& gap, int degree)
       : mapping(degree) {
@@ -32,14 +62,18 @@ struct MappedBox {
       high[axis] = edges[axis].back();
     }
     dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, steps, low, high, true);
+    // deal.II asks from several threads, and ends the program if an exception leaves one of them.
+    FirstFault fault;
     mapping.initialize(
         dealii::MappingQ<dim>(1), triangulation,
-        [&gap](const auto&, const dealii::Point<dim>& chart) {
+        [&](const auto&, const dealii::Point<dim>& chart) {
           dealii::Point<dim> place = chart;
-          place[1] *= gap(chart[0], dim == 3 ? chart[2] : 0.0);
+          const double z = dim == 3 ? chart[2] : 0.0;
+          fault.watch({chart[0], z}, [&] { place[1] *= gap(chart[0], z); });
           return place;
         },
         false);
+    fault.rethrow();
   }
 
   dealii::Triangulation<dim> triangulation;
