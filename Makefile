@@ -23,8 +23,9 @@ SEEDS ?= 5
 VERDICTS ?= $(BUILD)/verdicts.csv
 VERDICT_WALLS ?= 8
 VERDICT_SEEDS ?= 5
-# Of `make tidy-changed`: how far back a source counts as changed.
+# Of `make tidy-changed` and `make asan-changed`: how far back a source counts as changed.
 TIDY_COMMITS ?= 6
+ASAN_COMMITS ?= 15
 # `make asan` leaves out tests that took longer than this in `make test`: ten times as long under the
 # sanitizers, which see the same code on smaller grids and in these.
 ASAN_SECONDS ?= 0.5
@@ -47,7 +48,7 @@ without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
 .PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models simulation simulation-check check format format-check layers \
-        scripts tidy tidy-changed asan asan-all fuzz fuzz-coverage clean \
+        scripts tidy tidy-changed asan asan-changed asan-all fuzz fuzz-coverage clean \
         install-packages help
 
 all: ## build the program, build/manoscope (the default)
@@ -171,6 +172,17 @@ asan: ## the tests once more, under the address and undefined-behaviour sanitize
 	@cmake --build --preset asan -j $(JOBS)
 	@ctest --preset asan -j $(JOBS) \
 	  -E "$$(tools/long_tests.py $(BUILD) $(ASAN_SECONDS) '$(ASAN_KEEPS)')"
+
+asan-changed: ## the same for the modules alone that the last ASAN_COMMITS commits changed
+	@$(install) build libraries figures tests
+	@cmake --preset asan --log-level=WARNING $(CMAKE_FLAGS)
+	@modules=$$(tools/changed_modules.py $(ASAN_COMMITS)); \
+	if [ -z "$$modules" ]; then echo "no module changed"; exit 0; fi; \
+	cmake --build --preset asan -j $(JOBS) --target $$(printf '%s_test ' $$modules) && \
+	long=$$(tools/long_tests.py $(BUILD) $(ASAN_SECONDS) '$(ASAN_KEEPS)') && \
+	for module in $$modules; do echo "-- $$module"; \
+	  ctest --test-dir build-asan/src/manoscope/$$module --output-on-failure --no-tests=error \
+	    -j $(JOBS) -E "$$long" || exit 1; done
 
 asan-all: ## every test under the sanitizers: an hour
 	@$(MAKE) --no-print-directory asan ASAN_SECONDS=1e9
