@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -11,9 +10,10 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/flags.hpp"
+#include "manoscope/inversion/model_scale.hpp"
+#include "manoscope/inversion/shared_errors.hpp"
 #include "manoscope/numerics/natural_spline.hpp"
 #include "manoscope/numerics/penalised_fit.hpp"
-#include "manoscope/numerics/robust.hpp"
 
 namespace manoscope::inversion {
 namespace {
@@ -71,90 +71,12 @@ double count_together(const Array1& residual) {
   return together;
 }
 
-/// Pressures of the measured curves and those of the model at which the wall deflects alike.
-class ModelScale {
- public:
-  explicit ModelScale(const NonlocalWall& wall)
-      : own_(wall.uniform.pressure), model_(own_ - wall.offset) {
-    const Index n = own_.size();
-    // Offsets that would turn the order of levels are none that could be taken back.
-    if (!(model_.tail(n - 1) > model_.head(n - 1)).all()) model_ = own_;
-  }
-  double to_model(double pressure) const { return map(own_, model_, pressure); }
-  double from_model(double pressure) const { return map(model_, own_, pressure); }
-  /// Half of what the offset changes over the step between levels around a pressure, Pa.
-  double doubt(double pressure) const {
-    const Index k = step(own_, pressure);
-    return 0.5 * std::abs((model_[k] - own_[k]) - (model_[k - 1] - own_[k - 1]));
-  }
-
- private:
-  /// The upper end of the step around a value; of the first or last step beyond them.
-  static Index step(const Array1& from, double value) {
-    const Index above = std::upper_bound(from.begin(), from.end(), value) - from.begin();
-    return std::clamp<Index>(above, 1, from.size() - 1);
-  }
-  /// Straight lines between the levels; shifted alike beyond them.
-  static double map(const Array1& from, const Array1& to, double value) {
-    const Index k = step(from, value);
-    const double share = std::clamp((value - from[k - 1]) / (from[k] - from[k - 1]), 0.0, 1.0);
-    const double at = from[k - 1] + share * (from[k] - from[k - 1]);
-    return to[k - 1] + share * (to[k] - to[k - 1]) + (value - at);
-  }
-  Array1 own_, model_;
-};
-
 /// The same reading, counted in the pressures of the model.
 PressureReading in_model(PressureReading local, const ModelScale& scale) {
   for (Index i = 0; i < local.x.size(); ++i) {
     if (local.answered(i)) local.pressure[i] = scale.to_model(local.pressure[i]);
   }
   return local;
-}
-
-/// Errors that stations share, of known shape and unit variance, beside errors of their own:
-/// V = diag(1/weight) + E E^T.
-class SharedErrors {
- public:
-  /// @param effect  E, (n, k), k from 0.
-  SharedErrors(const Matrix& effect, const Array1& weight)
-      : effect_(effect),
-        weight_(weight),
-        weighted_(weight.matrix().asDiagonal() * effect),
-        factors_(Matrix::Identity(effect.cols(), effect.cols()) + effect.transpose() * weighted_) {}
-
-  /// V^-1 times columns, by the formula of Sherman, Morrison and Woodbury.
-  Matrix weighted(const Matrix& columns) const {
-    return weight_.matrix().asDiagonal() * columns -
-           weighted_ * factors_.solve(weighted_.transpose() * columns);
-  }
-  /// What is left of residuals once the most likely shared errors are taken off.
-  Vector own_part(const Vector& residual) const {
-    return residual - effect_ * factors_.solve(weighted_.transpose() * residual);
-  }
-
- private:
-  const Matrix& effect_;
-  Array1 weight_;
-  Matrix weighted_;
-  Eigen::LLT<Matrix> factors_;
-};
-
-/// Effects of the modes of one source on some stations, a column a mode.
-Matrix effects_of(const PressureReading& reading, const std::string& source,
-                  const std::vector<Index>& stations) {
-  std::vector<const ErrorMode*> modes;
-  for (const ErrorMode& mode : reading.uncertainty.modes) {
-    if (mode.source == source) modes.push_back(&mode);
-  }
-  Matrix effects(static_cast<Index>(stations.size()), static_cast<Index>(modes.size()));
-  for (Index a = 0; a < effects.rows(); ++a) {
-    for (Index j = 0; j < effects.cols(); ++j) {
-      effects(a, j) =
-          modes[static_cast<std::size_t>(j)]->effect[stations[static_cast<std::size_t>(a)]];
-    }
-  }
-  return effects;
 }
 
 /// Knots of p(x): near the ends, where the wall is stiff and pixels tell little, nearly as far
@@ -401,113 +323,7 @@ class Reader {
   std::optional<Choice> chosen_, settled_;
 };
 
-/// Pressures to solve the wall at, ascending and apart, and which of them stands for each level.
-struct ModelLevels {
-  Array1 pressure;
-  std::vector<Index> of_level;
-};
-
-ModelLevels model_levels(const Array1& estimates) {
-  constexpr double kApart = 2e-4;  // of the range
-  std::vector<Index> order(static_cast<std::size_t>(estimates.size()));
-  for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<Index>(k);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return estimates[a] < estimates[b]; });
-  const double apart = kApart * (estimates.maxCoeff() - estimates.minCoeff());
-  std::vector<double> pressures;
-  ModelLevels levels;
-  levels.of_level.resize(order.size());
-  for (const Index k : order) {
-    if (pressures.empty() || estimates[k] > pressures.back() + apart) {
-      pressures.push_back(estimates[k]);
-    }
-    levels.of_level[static_cast<std::size_t>(k)] = static_cast<Index>(pressures.size()) - 1;
-  }
-  levels.pressure =
-      Eigen::Map<const Array1>(pressures.data(), static_cast<Index>(pressures.size()));
-  return levels;
-}
-
 }  // namespace
-
-void ReadNonlocalOptions::validate() const {
-  if (!(finest_ripple >= 0.1 && finest_ripple <= 10.0)) {
-    throw InputError("--finest-ripple", fmt::format("is {}", finest_ripple),
-                     "Give a number from 0.1 to 10");
-  }
-  if (!(largest_model_error > 0.0 && largest_model_error <= 1.0)) {
-    throw InputError("--largest-model-error", fmt::format("is {}", largest_model_error),
-                     "Give a number above 0, at most 1");
-  }
-}
-
-void update_offset(NonlocalWall& wall, const calibration::ConstitutiveCurves& curves) {
-  constexpr double kMargin = 0.5;  // widths
-  const Array1& pressure = wall.uniform.pressure;
-  const Array2& profiles = wall.uniform.deflection;
-  const double length = wall.calibrated.wall.length.si();
-  const double margin = kMargin * wall.calibrated.wall.width.si();
-  const Index n = pressure.size();
-  wall.offset = Array1::Zero(n);
-  for (Index j = 0; j < n; ++j) {
-    Index k = 0;  // the level that this state of the model stands for
-    (curves.level_pressure - pressure[j]).abs().minCoeff(&k);
-    const Index low = std::max<Index>(0, j - 1), high = std::min(n - 1, j + 1);
-    const Profile& profile = curves.levels[static_cast<std::size_t>(k)].profile;
-    std::vector<double> offsets;
-    for (Index i = 0; i < profiles.cols(); ++i) {
-      const double rise = profiles(high, i) - profiles(low, i);
-      const bool inside = curves.x[i] > margin && curves.x[i] < length - margin;
-      if (!inside || profile.flags[i] != 0 || !(rise > 0.0)) continue;
-      const double compliance = rise / (pressure[high] - pressure[low]);
-      offsets.push_back((profiles(j, i) - profile.zeta[i]) / compliance + curves.level_pressure[k] -
-                        pressure[j]);
-    }
-    if (!offsets.empty()) wall.offset[j] = numerics::median(offsets);
-  }
-}
-
-std::optional<NonlocalWall> make_nonlocal_wall(const calibration::ConstitutiveCurves& curves,
-                                               const WallKnowledge& known,
-                                               const ReadNonlocalOptions& options,
-                                               const Monitor& monitor, std::string& reason) {
-  options.validate();
-  constexpr double kPerMisfit = 3.0, kLeastError = 0.01;
-  auto calibrated = calibrate_wall(curves, known, reason);
-  if (!calibrated) return std::nullopt;
-  const ModelLevels levels = model_levels(curves.level_pressure);
-  if (levels.pressure.size() < 3) {
-    reason = "fewer than three levels";
-    return std::nullopt;
-  }
-  NonlocalWall wall;
-  try {
-    wall.response =
-        std::make_shared<const WallResponse>(calibrated->wall, levels.pressure, monitor);
-  } catch (const InputError& error) {
-    reason = fmt::format("{} {}", error.where(), error.found());
-    return std::nullopt;
-  }
-  wall.uniform = {levels.pressure, wall.response->profiles(curves.x)};
-  Array2 model(static_cast<Index>(levels.of_level.size()), curves.x.size());
-  for (std::size_t k = 0; k < levels.of_level.size(); ++k) {
-    model.row(static_cast<Index>(k)) = wall.uniform.deflection.row(levels.of_level[k]);
-  }
-  calibrated->model_error =
-      std::max(kLeastError, kPerMisfit * end_misfit(curves, model, known.length, known.width));
-  if (calibrated->model_error > options.largest_model_error) {
-    reason = fmt::format("a uniform clamped wall is off by {:.0f} % near the ends",
-                         100.0 * calibrated->model_error);
-    return std::nullopt;
-  }
-  wall.calibrated = *calibrated;
-  const Index n_nodes = wall.response->nodes().size();
-  const double middle = levels.pressure[levels.pressure.size() / 2];
-  wall.half_wavelength = wall.response->half_wavelength(
-      wall.response->answer(Eigen::VectorXd::Constant(n_nodes, middle)).kernel, n_nodes / 2);
-  update_offset(wall, curves);
-  return wall;
-}
 
 std::optional<NonlocalReading> read_nonlocal(const PressureReading& local, const NonlocalWall& wall,
                                              double coverage, const ReadNonlocalOptions& options) {
