@@ -1,6 +1,7 @@
 #include "predict_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -89,6 +90,10 @@ std::string predictions_text(const pipeline::Predictions& predictions, bool in_s
                       model.validity);
   if (predictions.model != model.name) text += fmt::format("Taken: {}.\n", predictions.model);
   text += fmt::format("Pressure at the outlet: {}. {}.\n", predictions.outlet, predictions.setup);
+  if (!predictions.taken_as_exact.empty()) {
+    text += fmt::format("U leaves out, since no uncertainty is stated: {}.\n",
+                        fmt::join(predictions.taken_as_exact, ", "));
+  }
   for (const FlowPrediction& flow : predictions.flows) text += '\n' + profile_text(flow);
   return text;
 }

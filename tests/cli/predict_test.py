@@ -40,6 +40,8 @@ class Predict(DemoFolder):
         for text in ("Predicted from the calibration", "Flow model section-march",
                      "Pressure at the outlet: as given", "crest 1.5"):
             self.assertIn(text, done.stdout)
+        self.assertIn("U leaves out, since no uncertainty is stated: the viscosity, the flow rate.",
+                      done.stdout)
         short = self.predict("--flow-rate", "30mL/min", "--quiet")
         self.assertEqual(len(short.stdout.splitlines()), 3)
 

@@ -107,6 +107,14 @@ std::string outlet_words(const PredictOptions& options, bool from_runs) {
   return from_runs ? "as the runs have it" : "0 Pa behind it, since no run tells it";
 }
 
+std::vector<std::string> exact_inputs(const Experiment& experiment) {
+  std::vector<std::string> names;
+  if (!experiment.channel.height_uncertainty) names.push_back("the gap (channel.height)");
+  if (!experiment.fluid.viscosity_uncertainty) names.push_back("the viscosity");
+  if (!experiment.instrument.flow_rate_uncertainty) names.push_back("the flow rate");
+  return names;
+}
+
 }  // namespace
 
 void PredictOptions::validate() const {
@@ -141,6 +149,7 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
   result.setup = known.words;
   result.model = runs.chosen.words;
   result.outlet = outlet_words(options, runs.outlet.has_value());
+  result.taken_as_exact = exact_inputs(experiment);
   validation::PredictFlowOptions coupling = options.coupling;
   if (!coupling.healing_length) coupling.healing_length = healing_length(calibration);
   result.flows.resize(flow_rates.size());

@@ -37,6 +37,8 @@ struct Predictions {
   std::string outlet;                             ///< where the outlet pressure comes from
   std::string setup;                              ///< section and inlet, in words
   std::string model;                              ///< why that flow model, in words
+  /// Inputs whose uncertainty the experiment does not state, in words: U leaves them out.
+  std::vector<std::string> taken_as_exact;
 };
 
 /// Predicts flow rates from the calibration of an experiment. Its flow runs serve to place the

@@ -53,6 +53,22 @@ TEST(Predict, FlowRatesThatWereNotRun) {
   }
 }
 
+TEST(Predict, TellsWhichInputsCountAsExact) {
+  experiment::Experiment experiment = read_once();
+  PredictOptions options;
+  options.model = "creeping";
+  const auto exact = [&] {
+    return predict(experiment, {20.0 * mL_per_min}, options, local()).taken_as_exact;
+  };
+  experiment.channel.height_uncertainty.reset();
+  experiment.fluid.viscosity_uncertainty = experiment.fluid.viscosity * 0.01;
+  experiment.instrument.flow_rate_uncertainty.reset();
+  EXPECT_EQ(exact(), (std::vector<std::string>{"the gap (channel.height)", "the flow rate"}));
+  experiment.channel.height_uncertainty = 0.5 * um;
+  experiment.instrument.flow_rate_uncertainty = 0.005;
+  EXPECT_EQ(exact(), std::vector<std::string>{});
+}
+
 TEST(Predict, TakesModelAndOutletAsGiven) {
   PredictOptions options;
   options.model = "creeping";
