@@ -72,8 +72,10 @@ struct FlowSection {
 /// the roof by polynomials of degree k.
 ///
 /// Weak form: for all v, q that vanish where values are given,
-///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
-/// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
+///   Re ((u . grad) u, v) + (grad u, grad v) + 0.03 Re (div u, div v) - (p, div v) - (q, div u)
+///     = (f, v),
+/// where the third term, 0 for the exact flow, holds the divergence of coarse meshes down; whose
+/// natural condition is SideCondition::open. Without an open side p is 0 at one node.
 /// Newton's iteration with the exact derivative, from Stokes flow to `reynolds` in steps that halve
 /// where it fails; every linear system is solved directly and checked (SparseDirect). Source: e.g.
 /// H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
