@@ -3,8 +3,8 @@
 
 usage: tools/verdict_table.py CAMPAIGN.csv [--json | --page PAGE]
 
-CAMPAIGN.csv is what verdict_campaign writes: one row a run of a virtual experiment that obeys the
-flow model it is held against. Prints three Markdown tables, a row for each sample, for each class of
+CAMPAIGN.csv is what verdict_campaign writes: one row a run of a virtual experiment that obeys
+section-march, held against the model that its runs chose. Prints three Markdown tables, a row for each sample, for each class of
 Re h/l and for all: how often the verdict is a false alarm, by the drop (E_n > 1) and along x (p value
 below 0.01), and how often a gap 3 % too large is caught by either; how far off the flow rate is that
 the deflection tells; and the same of the drop predicted from calibration and flow rate. The runs of
@@ -24,6 +24,7 @@ import coverage_table
 
 BEGIN, END = "<!-- begin verdicts -->", "<!-- end verdicts -->"
 ALONG_TAIL = 0.01  # CompareModelsOptions::along_tail
+TRUE_MODEL = "section-march"
 EXPANSION_95 = 1.959964
 CLOSE = 0.02
 CLASSES = ((1.0, "Re h/l below 1"), (3.0, "Re h/l 1 to 3"), (math.inf, "Re h/l above 3"))
@@ -92,6 +93,8 @@ def summary(rows):
     caught, caught_error = share(rows, "caught")
     wrong = [number(row, "wrong_en_number") for row in rows if row["wrong_en_number"]]
     return {"experiments": len({(row["base"], row["wall"], row["seed"]) for row in rows}),
+            "chosen": statistics.fmean(row["model"] == TRUE_MODEL for row in rows),
+            "wrong_chosen": statistics.fmean(row["wrong_model"] == TRUE_MODEL for row in rows),
             "runs": len(rows), "no_verdict": sum("false" not in row for row in rows),
             "false_drop": share(rows, "false_drop")[0], "false_along": share(rows, "false_along")[0],
             "false": false, "false_error": false_error, "caught": caught,
@@ -108,6 +111,11 @@ def groups(rows):
     return [(name, chosen) for name, chosen in named if chosen] + [("all", rows)]
 
 
+def percent(value, error):
+    """A share with its standard error, which there is none of where all rows say the same."""
+    return f"{100 * value:.1f}" + (f" ± {100 * error:.1f}" if error > 0 else "")
+
+
 def verdict_lines(named):
     lines = ["| | experiments | runs (no verdict) | drop called different, % | p(x) along x called "
              "different, % | false alarms by either, % | gap 3 % too large caught, % "
@@ -116,9 +124,10 @@ def verdict_lines(named):
         lines.append(
             f"| {name} | {s['experiments']} | {s['runs']} ({s['no_verdict']}) "
             f"| {100 * s['false_drop']:.1f} | {100 * s['false_along']:.1f} "
-            f"| {100 * s['false']:.1f} ± {100 * s['false_error']:.1f} "
-            f"| {100 * s['caught']:.1f} ± {100 * s['caught_error']:.1f} "
-            f"| {s['wrong_en_median']:.1f} | {s['wrong_en_least']:.1f} |")
+            f"| {percent(s['false'], s['false_error'])} "
+            f"| {percent(s['caught'], s['caught_error'])} "
+            f"| {s['wrong_en_median']:.1f} | {s['wrong_en_least']:.1f} "
+            f"| {100 * s['chosen']:.0f} ({100 * s['wrong_chosen']:.0f}) |")
     return lines
 
 
@@ -133,7 +142,7 @@ def error_lines(named, what, title):
         lines.append(
             f"| {name} | {e['runs']} ({e['silent']}) | {100 * e['rms']:.2f} "
             f"| {100 * e['within_2_percent']:.1f} "
-            f"| {100 * e['coverage_95']:.1f} ± {100 * e['coverage_95_error']:.1f} "
+            f"| {percent(e['coverage_95'], e['coverage_95_error'])} "
             f"| {e['pull_rms']:.2f} ± {e['pull_rms_error']:.2f} |")
     return lines
 

@@ -11,13 +11,13 @@ import unittest
 PROGRAM = pathlib.Path(__file__).with_name("verdict_table.py")
 COLUMNS = ("base,wall,seed,run,reduced_reynolds,flow_rate_mL_min,difference,en_number,p_value,"
            "agreement,wrong_difference,wrong_en_number,wrong_p_value,wrong_agreement,"
-           "inferred_error,inferred_pull,predicted_error,predicted_pull,silent\n")
+           "inferred_error,inferred_pull,predicted_error,predicted_pull,model,wrong_model,silent\n")
 
 
 def row(base, seed, run="Q5", reduced="0.5", en="0.3", tail="0.4", wrong_en="3", wrong_tail="1e-9",
-        inferred=("0.01", "1"), predicted=("0.01", "1")):
+        inferred=("0.01", "1"), predicted=("0.01", "1"), models="section-march,paper"):
     return (f"{base},0,{seed},{run},{reduced},5,0.003,{en},{tail},agree,-0.08,{wrong_en},"
-            f"{wrong_tail},differ,{','.join(inferred)},{','.join(predicted)},\n")
+            f"{wrong_tail},differ,{','.join(inferred)},{','.join(predicted)},{models},\n")
 
 
 class VerdictTable(unittest.TestCase):
@@ -43,6 +43,7 @@ class VerdictTable(unittest.TestCase):
         self.assertAlmostEqual(every["false"], 0.5)
         self.assertAlmostEqual(every["caught"], 0.75)
         self.assertAlmostEqual(every["wrong_en_least"], 0.9)
+        self.assertEqual((every["chosen"], every["wrong_chosen"]), (1.0, 0.0))
 
     def test_a_gap_is_caught_along_x_as_well(self):
         self.file.write_text(COLUMNS + row("S1", 1, wrong_en="0.9", wrong_tail="1e-3"))
@@ -75,7 +76,7 @@ class VerdictTable(unittest.TestCase):
         self.assertNotIn("stale", text)
         self.assertIn("Of 3 experiments with 2 walls:", text)
         self.assertIn("| Re h/l 1 to 3 | 1 | 1 (0) | 100.0 | 0.0 |", text)
-        self.assertIn("| S1 | 1 (0) | 1.00 | 100.0 | 100.0 ± nan | 1.00 ± nan |", text)
+        self.assertIn("| S1 | 1 (0) | 1.00 | 100.0 | 100.0 | 1.00 ± nan |", text)
 
     def test_faults_are_told(self):
         self.file.write_text(COLUMNS)

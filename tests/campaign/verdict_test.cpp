@@ -27,6 +27,9 @@ TEST(Verdicts, TellTheTrueGapFromOneThatIsThreePercentOff) {
     for (const JudgedRun& run : judge_flow({"S5", 0, seed}, scenario, solved, scratch.path())) {
       SCOPED_TRACE(run.run);
       EXPECT_EQ(run.silent, "");
+      // The truth; and no other model that would make up for the gap.
+      EXPECT_EQ(run.model, "section-march");
+      EXPECT_EQ(run.wrong_model, "section-march");
       ++n;
       false_alarms += run.true_gap.agreement != validation::Agreement::agree;
       // Nine percent of the drop, stated to one: whatever was drawn, 4 sigma lie within.

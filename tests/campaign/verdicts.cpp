@@ -15,10 +15,10 @@ namespace {
 
 constexpr flow::FlowModel kTrueModel = flow::FlowModel::section_march;
 
-Verdict verdict_of(const pipeline::FlowFindings& found) {
+Verdict verdict_of(const pipeline::FlowFindings& found, flow::FlowModel model) {
   if (!found.comparison) return {};
   for (const validation::ModelAgreement& one : found.comparison->models) {
-    if (one.model != kTrueModel || one.agreement == validation::Agreement::no_verdict) continue;
+    if (one.model != model || one.agreement == validation::Agreement::no_verdict) continue;
     return {one.difference / found.comparison->extracted.value, one.en_number, one.along.tail,
             one.agreement};
   }
@@ -61,7 +61,7 @@ std::string cells(const Miss& miss) {
 const char* const kVerdictHeader =
     "base,wall,seed,run,reduced_reynolds,flow_rate_mL_min,difference,en_number,p_value,agreement,"
     "wrong_difference,wrong_en_number,wrong_p_value,wrong_agreement,inferred_error,inferred_pull,"
-    "predicted_error,predicted_pull,silent\n";
+    "predicted_error,predicted_pull,model,wrong_model,silent\n";
 
 twin::Scenario verdict_scenario(const std::string& base, std::uint64_t number) {
   twin::Scenario scenario = varied_scenario(base, number);
@@ -105,13 +105,20 @@ std::vector<JudgedRun> judge_flow(const Member& member, const twin::Scenario& sc
   experiment::Experiment wrong = told;
   wrong.channel.height = told.channel.height + (kWrongGap - 1.0) * scenario.channel.height;
 
-  pipeline::MeasureOptions options;
-  options.flow.flow_model = scenario.solver.flow_model;
+  const pipeline::MeasureOptions options;  // as a user has them: the runs choose the model
   std::string reason;
   const pipeline::Calibration calibration = pipeline::calibrate(told, options, 1, {});
   const auto flow = pipeline::find_flow(told, calibration, options, reason);
   const auto wrong_flow = pipeline::find_flow(wrong, calibration, options, reason);
   auto findings = pipeline::read_runs(told, calibration, flow, options, 1, {});
+  auto wrong_findings = findings;
+  for (std::size_t r = 0; r < findings.size(); ++r) {
+    wrong_findings[r].flow =
+        pipeline::compare_flow(wrong, wrong_flow, calibration.runs[r], findings[r].reading,
+                               findings[r].section, options.flow);
+  }
+  const flow::FlowModel chosen = pipeline::choose_model(findings, options.flow).model;
+  const flow::FlowModel wrongly_chosen = pipeline::choose_model(wrong_findings, options.flow).model;
   std::vector<JudgedRun> judged;
   for (std::size_t r = 0; r < findings.size(); ++r) {
     const pipeline::FlowRun& run = calibration.runs[r];
@@ -119,13 +126,14 @@ std::vector<JudgedRun> judge_flow(const Member& member, const twin::Scenario& sc
     JudgedRun one;
     one.run = run.name;
     one.flow_rate = written.scalars[r].flow_rate;
-    one.true_gap = verdict_of(found.flow);
+    one.model = flow::flow_model_info(chosen).name;
+    one.wrong_model = flow::flow_model_info(wrongly_chosen).name;
+    one.true_gap = verdict_of(found.flow, chosen);
     if (found.flow.comparison) one.reduced_reynolds = found.flow.comparison->reduced_reynolds;
-    one.wrong_gap = verdict_of(
-        pipeline::compare_flow(wrong, wrong_flow, run, found.reading, found.section, options.flow));
+    one.wrong_gap = verdict_of(wrong_findings[r].flow, wrongly_chosen);
     if (flow) {
-      pipeline::apply_model(told, *flow, kTrueModel, run, found.reading, found.section,
-                            options.flow, found.flow);
+      pipeline::apply_model(told, *flow, chosen, run, found.reading, found.section, options.flow,
+                            found.flow);
     }
     if (found.flow.flow_rate) {
       one.inferred = miss(found.flow.flow_rate->value, one.flow_rate.si());
@@ -146,10 +154,10 @@ std::string verdict_rows(const Member& member, const std::vector<JudgedRun>& run
   for (const JudgedRun& one : runs) {
     std::string silent = one.silent;
     std::replace(silent.begin(), silent.end(), ',', ';');
-    rows +=
-        fmt::format("{}{},{},{:.4g},{},{},{},{},{}\n", member.name(), one.run,
-                    cell(one.reduced_reynolds), one.flow_rate.in(mL_per_min), cells(one.true_gap),
-                    cells(one.wrong_gap), cells(one.inferred), cells(one.predicted), silent);
+    rows += fmt::format("{}{},{},{:.4g},{},{},{},{},{},{},{}\n", member.name(), one.run,
+                        cell(one.reduced_reynolds), one.flow_rate.in(mL_per_min),
+                        cells(one.true_gap), cells(one.wrong_gap), cells(one.inferred),
+                        cells(one.predicted), one.model, one.wrong_model, silent);
   }
   return rows;
 }

@@ -35,7 +35,7 @@ inline constexpr double kWrongGap = 1.03;  // times the true one
 void state_with_errors(experiment::Experiment& experiment, const twin::Scenario& scenario,
                        const Member& member);
 
-/// section-march against the reading of one run.
+/// The model that the runs chose against the reading of one run.
 struct Verdict {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   double difference = kNone;  ///< model less reading, over the reading
@@ -55,6 +55,7 @@ struct JudgedRun {
   std::string run;
   double reduced_reynolds = Verdict::kNone;  ///< Re h/l
   FlowRate flow_rate{};                      ///< true
+  std::string model, wrong_model;            ///< chosen with either gap
   Verdict true_gap;                          ///< stated height: true, off by its draw
   Verdict wrong_gap;                         ///< 3 % too large, and off by the same draw
   Miss inferred;                             ///< flow rate from the deflection alone
@@ -62,9 +63,9 @@ struct JudgedRun {
   std::string silent;  ///< why something could not be told; empty if all was
 };
 
-/// Makes the experiment, measures it once with flow_model = section-march and stated quantities of
-/// state_with_errors(), and compares the same readings once more with the flow through the wrong
-/// gap. What could not be told stays NaN.
+/// Makes the experiment, measures it once as a user would, model left to the runs, with stated
+/// quantities of state_with_errors(), and compares the same readings once more with the flow
+/// through the wrong gap, model chosen anew. What could not be told stays NaN.
 /// @param scenario  verdict_scenario() or one like it.
 std::vector<JudgedRun> judge_flow(const Member& member, const twin::Scenario& scenario,
                                   const twin::SolvedScenario& solved,

@@ -45,8 +45,10 @@ struct ChosenModel {
   std::string words;
 };
 
-/// The model that the options name. "auto": section-march, unless p(x) along x, over all runs
+/// The model that the options name. "auto": section-march, unless the shape of p(x), over all runs
 /// together, makes another model ten times as likely; its stated error counts against a vague one.
+/// Gap, viscosity and flow rate are free in that (ModelAgreement::log_likelihood): a verdict by a
+/// model that was chosen because it makes up for a wrong gap would be none.
 ChosenModel choose_model(const std::vector<RunFindings>& findings,
                          const CompareFlowOptions& options);
 

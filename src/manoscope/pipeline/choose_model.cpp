@@ -22,7 +22,7 @@ ChosenModel choose_model(const std::vector<RunFindings>& findings,
       return one.agreement != validation::Agreement::no_verdict;
     });
     if (!all || models.size() != flow::kFlowModels.size()) continue;
-    for (const auto& one : models) likelihood[one.model] += one.along.log_likelihood;
+    for (const auto& one : models) likelihood[one.model] += one.log_likelihood;
     ++n_runs;
   }
   ChosenModel chosen;

@@ -147,7 +147,7 @@ std::vector<RunFindings> runs_that_prefer(flow::FlowModel model, double by, int 
     validation::ModelAgreement one;
     one.model = info.model;
     one.agreement = validation::Agreement::agree;
-    one.along.log_likelihood = info.model == model ? -10.0 + by : -10.0;
+    one.log_likelihood = info.model == model ? -10.0 + by : -10.0;
     found.flow.comparison->models.push_back(one);
   }
   return std::vector<RunFindings>(static_cast<std::size_t>(n_runs), found);
@@ -180,9 +180,10 @@ TEST(CompareFlowWith, AGapThatIsWrongIsCaught) {
   MomentumExperiment test;
   test.remove_line("height =");
   test.replace("[channel]", "[channel]\nheight = \"180.25 um\"");
-  const Measurement m = test.measure(with_models("momentum"));
+  // Whatever model the runs choose: another one does not make up for the gap.
+  const Measurement m = test.measure(with_models("auto"));
   // 3 % of the gap are 9 % of the drop, ten times the bar of 0.3 %.
-  EXPECT_GT(m.model_en_number(row(m.flow_model, "momentum"), 0), 2.0);
+  EXPECT_GT(m.model_en_number(row(m.flow_model, m.verdict_model), 0), 2.0);
   EXPECT_EQ(m.verdict[0].rfind("do not agree", 0), 0u) << m.verdict[0];
 }
 

@@ -42,13 +42,18 @@ enum class Agreement {
 /// One flow model against the reading of one run.
 struct ModelAgreement {
   flow::FlowModel model = flow::FlowModel::paper;
-  Array1 pressure;           ///< (n) Pa, on the line, 0 at the outlet
-  Estimate drop;             ///< Pa, over the test section
-  double difference = 0.0;   ///< Pa, model less reading
-  double uncertainty = 0.0;  ///< Pa, standard, of the difference: what both share is in it once
+  Array1 pressure;          ///< (n) Pa, on the line, 0 at the outlet
+  Estimate drop;            ///< Pa, over the test section
+  double difference = 0.0;  ///< Pa, model less reading
+  /// Pa, standard, of the difference: what both share is in it once, and the inlet profile only
+  /// where it moves the drop towards the reading.
+  double uncertainty = 0.0;
   /// |difference| / (2 uncertainty): the E_n number of ISO/IEC 17043; NaN without a verdict.
   double en_number = 0.0;
-  ChiSquare along;         ///< of the mean pressures of the pieces; tail 1 without a verdict
+  ChiSquare along;  ///< of the mean pressures of the pieces; tail 1 without a verdict
+  /// Of p along x with gap, viscosity and flow rate free by another 5 % each: tells models apart by
+  /// the shape of p(x), so that a wrong gap is not taken for another model. 0 without a verdict.
+  double log_likelihood = 0.0;
   flow::ModelError error;  ///< stated error of the model at this flow
   bool valid = false;      ///< whether that is at most CompareModelsOptions::validity
   bool separated = false;  ///< a march met backflow
@@ -92,7 +97,8 @@ struct ModelComparison {
 /// "agree" where E_n <= 1 and chi-square along x, which asks the same of p(x) up to a constant, is
 /// not larger than chance makes it (along_tail). Without a stated uncertainty of the gap there is
 /// no verdict: 1 % of 2 h0 moves the drop by 3 %. For errors that are normal with the stated
-/// widths, E_n > 1 in 4.6 % of runs whose model is true.
+/// widths, E_n > 1 in 4.6 % of runs whose model is true; in fewer where the inlet is not known,
+/// since its profile lies anywhere within its spread.
 ///
 /// Source: ISO/IEC 17043 (E_n); JCGM 102 (covariance). Cost: that of the models, and n stations
 /// squared for their derivatives.

@@ -115,20 +115,40 @@ Array1 inlet_rise(const FlowSetup& setup, const flow::FlowCase& flow) {
     throw InputError("inlet spread", fmt::format("is {}", setup.inlet_spread),
                      "Give 0 for a known profile, up to 1 for one between developed and uniform");
   }
-  if (setup.inlet_spread == 0.0 || !(flow.flow_rate.si() > 0.0)) {
-    return Array1::Zero(flow.x.size());
-  }
+  const bool known = setup.inlet_spread == 0.0 && setup.inlet == flow::InletProfile::developed;
+  if (known || !(flow.flow_rate.si() > 0.0)) return Array1::Zero(flow.x.size());
   const auto tables = tables_for(setup, flow.zeta);
   flow::FlowCase other = flow;
-  const auto solve = [&](flow::InletProfile inlet) {
-    other.inlet = inlet;
-    return flow::pressure_along(flow::FlowModel::plane_march, other, *tables).pressure;
-  };
-  const Array1 rise = solve(flow::InletProfile::uniform) - solve(flow::InletProfile::developed);
-  if (rise.isFinite().all()) return setup.inlet_spread * rise;
+  for (const flow::FlowModel march :
+       {flow::FlowModel::section_march, flow::FlowModel::plane_march}) {
+    const auto solve = [&](flow::InletProfile inlet) {
+      other.inlet = inlet;
+      return flow::pressure_along(march, other, *tables).pressure;
+    };
+    const Array1 rise = solve(flow::InletProfile::uniform) - solve(flow::InletProfile::developed);
+    if (rise.isFinite().all()) return rise;
+  }
   throw InputError("inlet spread", "the march from a uniform or a developed profile broke down",
-                   "Smooth the deflection, or state the inlet profile with a spread of 0");
+                   "Smooth the deflection, or state the inlet profile as developed with a spread "
+                   "of 0");
 }
+
+namespace {
+
+/// Whether a model starts from FlowCase::inlet; the others know developed flow alone.
+bool takes_inlet(flow::FlowModel model) {
+  return model == flow::FlowModel::plane_march || model == flow::FlowModel::section_march;
+}
+
+/// What of the rise from a developed to a uniform profile a model may lack, -1 to 1.
+double lacking_rise(flow::FlowModel model, const FlowSetup& setup) {
+  if (model == flow::FlowModel::developing) return -setup.inlet_spread;
+  const bool uniform = setup.inlet == flow::InletProfile::uniform;
+  if (takes_inlet(model)) return uniform ? -setup.inlet_spread : setup.inlet_spread;
+  return uniform ? 1.0 : setup.inlet_spread;
+}
+
+}  // namespace
 
 ModelledRun modelled_run(flow::FlowModel model, const FlowSetup& setup, FlowRate flow_rate,
                          const WallLine& line) {
@@ -147,12 +167,8 @@ ModelledRun modelled_run(flow::FlowModel model, const FlowSetup& setup, FlowRate
     run.sensitivity = flow::flow_sensitivity(model, flow);
   }
   run.error = flow::model_error(model, flow);
-  const bool marches =
-      model == flow::FlowModel::plane_march || model == flow::FlowModel::section_march;
-  const bool starts_uniform = model == flow::FlowModel::developing ||
-                              (marches && setup.inlet == flow::InletProfile::uniform);
   // About the end of a rectangular distribution the mean square is a third of its width squared.
-  run.inlet_effect = (starts_uniform ? -1.0 : 1.0) / std::numbers::sqrt3 * inlet_rise;
+  run.inlet_effect = lacking_rise(model, setup) / std::numbers::sqrt3 * inlet_rise;
   return run;
 }
 

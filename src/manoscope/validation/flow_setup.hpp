@@ -63,8 +63,9 @@ struct ModelledRun {
   flow::FlowSensitivity sensitivity;
   flow::ModelError error;
   /// (n) Pa, what one standard deviation of the inlet profile does to p: that of a rectangular
-  /// distribution from `inlet` to inlet_spread of the way to the other profile, by two plane
-  /// marches; 0 if the spread is 0 or the flow does not run forward. `developing` starts uniform.
+  /// distribution from `inlet` to inlet_spread of the way to the other profile, by inlet_rise().
+  /// Models that know developed flow alone may lack the whole rise where `inlet` is uniform;
+  /// `developing` starts uniform. 0 for a known developed inlet, and unless the flow runs forward.
   Array1 inlet_effect;
 
   const Array1& pressure() const { return sensitivity.modelled.pressure; }
@@ -81,9 +82,10 @@ ModelledRun modelled_run(flow::FlowModel model, const FlowSetup& setup, FlowRate
 /// The case that modelled_run() solves.
 flow::FlowCase flow_case(const FlowSetup& setup, FlowRate flow_rate, const WallLine& line);
 
-/// p from a uniform profile less p from a developed one, by the plane march, times inlet_spread:
-/// (n) Pa; 0 where ModelledRun::inlet_effect is.
-/// @throws InputError if the spread is out of range or a march breaks down.
+/// p from a uniform profile less p from a developed one, (n) Pa, by the march on sections, or by
+/// the plane march where that breaks down; 0 for a known developed inlet, and unless the flow runs
+/// forward. The plane march alone would tell half to two thirds of it.
+/// @throws InputError if the spread is out of range or both marches break down.
 Array1 inlet_rise(const FlowSetup& setup, const flow::FlowCase& flow);
 
 /// Tables of a setup, or new ones for the deflections of a line.
