@@ -17,7 +17,8 @@ void add_report(Program& program) {
   command.positional("result", args->result, "result folder");
   command.options(args->options, "Report");
   command.action([args](const Context& context) {
-    const auto measurement = results::read_result(args->result);
+    auto measurement = results::read_result(args->result);
+    measurement.map_picture = results::read_maps(args->result, measurement);
     results::write_result(args->result, measurement,
                           report::make_report(measurement, args->options));
     print((args->result / "report.html").string() + "\n");

@@ -53,6 +53,7 @@ ADDED = {
     "transducer_drop": (("run",), "Pa"),
     "parasitic_drop": (("run",), "Pa"),
     "en_number": (("run",), "1"),
+    "map_pressure": (("map",), "Pa"),
     "map_tilt_x": (("map",), "1"),
     "map_tilt_z": (("map",), "1"),
     "map_noise": (("map",), "m"),

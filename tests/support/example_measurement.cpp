@@ -279,6 +279,8 @@ void add_maps(Measurement& m, const ExampleSize& size) {
     m.map.push_back("h" + std::to_string(level) + ".gsf");
   for (Index run = 0; run < size.n_runs; ++run) m.map.push_back("f" + std::to_string(run) + ".gsf");
   const auto n_m = static_cast<Index>(m.map.size());
+  m.map_pressure = nan1(n_m);
+  m.map_pressure.head(size.n_levels) = m.level_pressure;
   m.map_tilt_x = m.map_tilt_z = m.map_noise = m.map_missing = m.map_spikes = Array1(n_m);
   m.map_shift = m.map_shift_uncertainty = m.map_shift_across = m.map_rotation = Array1(n_m);
   m.map_shift_across_uncertainty = m.map_rotation_uncertainty = m.map_unmended = Array1(n_m);

@@ -12,6 +12,7 @@
 #include "manoscope/maps/channel_map.hpp"
 #include "manoscope/maps/combine_shifts.hpp"
 #include "manoscope/maps/cut_sections.hpp"
+#include "manoscope/maps/deflection_picture.hpp"
 #include "manoscope/maps/despike.hpp"
 #include "manoscope/maps/level.hpp"
 #include "manoscope/numerics/robust.hpp"
@@ -231,6 +232,9 @@ ReducedMap reduce_map(const HeightMap& map, const ChannelFrame& frame, const Map
   result.profile.uncertainty.modes.push_back({fmt::format("shift of {}", name), "registration",
                                               slope_along(result.profile, kReach) * shift.si()});
   measure_crest(leveled, frame, result);
+  if (known.picture_cells > 0) {
+    result.picture = picture_deflection(leveled.deflection, known.picture_cells);
+  }
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include "manoscope/core/deflection_map.hpp"
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/height_map.hpp"
+#include "manoscope/core/map_picture.hpp"
 #include "manoscope/core/profile.hpp"
 #include "manoscope/maps/centre_line.hpp"
 #include "manoscope/maps/frame_texture.hpp"
@@ -80,6 +81,7 @@ struct MapKnowledge {
   std::optional<Length> wavelength{};     ///< of the interferometer
   CentreLine placement{};                 ///< where the wall's middle runs in this map
   const FrameTexture* texture = nullptr;  ///< of the map of reference; null: not looked for
+  Index picture_cells = 0;                ///< of ReducedMap::picture, at most; 0: no picture
 };
 
 /// One map reduced to its profile.
@@ -89,6 +91,7 @@ struct ReducedMap {
   MapCondition condition;
   double crest = 0.0;              ///< m, deflection at mid-channel on the centre line; NaN if bad
   double crest_uncertainty = 0.0;  ///< m, standard
+  MapPicture picture;              ///< empty unless asked for
 };
 
 /// The deflection map of a height map: channel frame, rim's plane, spikes, noise.

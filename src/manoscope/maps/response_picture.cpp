@@ -5,23 +5,11 @@
 #include <limits>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/maps/cell_centres.hpp"
 #include "manoscope/maps/channel_map.hpp"
 #include "manoscope/maps/level.hpp"
 
 namespace manoscope::maps {
-namespace {
-
-/// Centres of cells of `per_cell` samples; the last may hold fewer.
-Array1 centres(Index n, Index per_cell, double first, double pitch) {
-  Array1 result((n + per_cell - 1) / per_cell);
-  for (Index cell = 0; cell < result.size(); ++cell) {
-    const Index begin = cell * per_cell, end = std::min(n, begin + per_cell);
-    result[cell] = first + 0.5 * static_cast<double>(begin + end - 1) * pitch;
-  }
-  return result;
-}
-
-}  // namespace
 
 ResponsePicture picture_response(const HeightMap& before, const HeightMap& after,
                                  const ChannelFrame& frame, const std::string& name) {
@@ -41,8 +29,8 @@ ResponsePicture picture_response(const HeightMap& before, const HeightMap& after
 
   const Index per_x = (grid.nx + kMostX - 1) / kMostX, per_z = (grid.nz + kMostZ - 1) / kMostZ;
   ResponsePicture picture;
-  picture.x = centres(grid.nx, per_x, grid.x(0), grid.pitch_x.si());
-  picture.z = centres(grid.nz, per_z, grid.z(0), grid.pitch_z.si());
+  picture.x = cell_centres(grid.nx, per_x, grid.x(0), grid.pitch_x.si());
+  picture.z = cell_centres(grid.nz, per_z, grid.z(0), grid.pitch_z.si());
   picture.height = Array2(picture.z.size(), picture.x.size());
   for (Index cz = 0; cz < picture.z.size(); ++cz) {
     for (Index cx = 0; cx < picture.x.size(); ++cx) {

@@ -192,7 +192,23 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
   store_budget(findings, m);
 }
 
-void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& m) {
+namespace {
+
+void store_pictures(const experiment::Experiment& experiment, const ReducedExperiment& reduced,
+                    results::Measurement& m) {
+  m.map_pressure = Array1::Constant(static_cast<Index>(m.map.size()), kNan);
+  for (std::size_t i = 0; i < experiment.hydrostatic.size(); ++i) {
+    m.map_pressure[static_cast<Index>(i)] = experiment.hydrostatic[i].pressure.si();
+  }
+  for (const auto* maps : {&reduced.hydrostatic, &reduced.flow}) {
+    for (const maps::ReducedMap& map : *maps) m.map_picture.push_back(map.picture);
+  }
+}
+
+}  // namespace
+
+void store_map_conditions(const experiment::Experiment& experiment,
+                          const ReducedExperiment& reduced, results::Measurement& m) {
   m.response_x = reduced.response.x;
   m.response_z = reduced.response.z;
   m.wall_response = reduced.response.height;
@@ -225,6 +241,7 @@ void store_map_conditions(const ReducedExperiment& reduced, results::Measurement
     m.map_rim_bend[i] = condition.bend.at_middle.si();
     m.map_rim_bend_uncertainty[i] = condition.bend.at_middle_uncertainty.si();
   }
+  store_pictures(experiment, reduced, m);
 }
 
 }  // namespace manoscope::pipeline

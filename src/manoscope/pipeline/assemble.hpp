@@ -64,7 +64,8 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
 void store_flow(const std::optional<FlowKnowledge>& knowledge, const ChosenModel& chosen,
                 const std::vector<FlowRun>& runs, const std::vector<RunFindings>& findings,
                 results::FlowChecks& checks);
-void store_map_conditions(const ReducedExperiment& reduced, results::Measurement& measurement);
+void store_map_conditions(const experiment::Experiment& experiment,
+                          const ReducedExperiment& reduced, results::Measurement& measurement);
 
 /// A level whose map disagrees with the curves through the other levels.
 struct LevelDoubt {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/pipeline/test_experiment.hpp"
@@ -12,6 +13,8 @@ namespace manoscope::pipeline {
 namespace {
 
 using results::Measurement;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The second run lies partly beyond the levels and is short of a whole patch of pixels.
 Measurement troubled() {
@@ -101,6 +104,44 @@ TEST(StoreCalibration, HasCrestsOfAParabola) {
     if (k == 0) continue;
     EXPECT_GT(m.level_pressure[k], m.level_pressure[k - 1]);
   }
+}
+
+/// Mean of a picture across the channel at a station, by the rows inside it; NaN if one is missing.
+double mean_across(const MapPicture& picture, double x, double width) {
+  Index ix = 0;
+  (picture.x - x).abs().minCoeff(&ix);
+  double sum = 0.0, n = 0.0;
+  for (Index iz = 0; iz < picture.z.size(); ++iz) {
+    if (std::abs(picture.z[iz]) > 0.5 * width) continue;
+    const auto count = picture.counts(iz, ix);
+    if (count == MapPicture::kMissing) return kNan;
+    sum += count * picture.step;
+    n += 1.0;
+  }
+  return sum / n;
+}
+
+TEST(StoreMapConditions, KeepsAPictureOfEveryMapThatTheProfilesAgreeWith) {
+  const Measurement m = troubled();
+  ASSERT_EQ(m.map_picture.size(), m.map.size());
+  Index n_compared = 0, n_missing = 0;
+  for (std::size_t i = 0; i < m.map.size(); ++i) {
+    const int run = m.map_run[i];
+    EXPECT_EQ(std::isnan(m.map_pressure[static_cast<Index>(i)]), run >= 0) << m.map[i];
+    EXPECT_NEAR(m.map_picture[i].step, 10e-9, 1e-9) << m.map[i];  // half of 20 nm, as measured
+    if (run < 0) continue;
+    for (Index ix = m.x.size() / 4; ix < 3 * m.x.size() / 4; ++ix) {
+      const double mean = mean_across(m.map_picture[i], m.x[ix], m.channel_width);
+      n_missing += std::isnan(mean);
+      if (std::isnan(mean) || std::isnan(m.deflection(run, ix))) continue;
+      ++n_compared;
+      // Up to half a row is lost or gained at either side, of some 40, where the wall is clamped;
+      // and the map may have been moved by a fraction of a pixel since.
+      EXPECT_NEAR(mean, m.deflection(run, ix), 0.03 * std::abs(m.deflection(run, ix)) + 20e-9);
+    }
+  }
+  EXPECT_GT(n_compared, 100);
+  EXPECT_GT(n_missing, 3);  // the patch without data
 }
 
 }  // namespace

@@ -136,7 +136,7 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
   store_flow(flow, chosen, runs, findings, measurement);
   measurement.flow_rate_uncertainty =
       measurement.flow_rate * experiment.instrument.flow_rate_uncertainty.value_or(0.0);
-  store_map_conditions(reduced, measurement);
+  store_map_conditions(experiment, reduced, measurement);
   store_tube_law(at_rest, inversion::station_stiffness(curves, gauge_of(experiment)), findings,
                  measurement);
   const inversion::Stretch stretch = inversion::wanted_stretch(

@@ -80,6 +80,11 @@ void expect_same_bytes(const Measurement& a, const Measurement& b) {
   EXPECT_EQ(a.crossing_run, b.crossing_run);
   EXPECT_EQ(a.run, b.run);
   EXPECT_EQ(a.map, b.map);
+  ASSERT_EQ(a.map_picture.size(), b.map_picture.size());
+  for (std::size_t i = 0; i < a.map_picture.size(); ++i) {
+    EXPECT_TRUE((a.map_picture[i].counts == b.map_picture[i].counts).all());
+    EXPECT_EQ(a.map_picture[i].step, b.map_picture[i].step);
+  }
   EXPECT_EQ(a.inputs, b.inputs);
   EXPECT_EQ(a.settings, b.settings);
   EXPECT_EQ(a.experiment, b.experiment);

@@ -20,6 +20,9 @@ namespace {
 
 using experiment::Experiment;
 
+/// Of all maps together: what a page can hold (some 6 MB).
+constexpr Index kPictureCells = 7'000'000;
+
 /// A map of the experiment in the camera window of the first one, the instrument's own reference
 /// subtracted where one is named.
 ///
@@ -124,6 +127,7 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   maps::MapKnowledge known;
   known.height_noise = experiment.instrument.height_noise;
   known.wavelength = experiment.instrument.wavelength;
+  known.picture_cells = std::max<Index>(1, kPictureCells / static_cast<Index>(files.size()));
   const bool registers = options.registration && !options.shift_uncertainty;
   std::optional<maps::FrameTexture> texture;
   if (registers) texture = maps::texture_of_reference(first, frame, known, first_name, options);

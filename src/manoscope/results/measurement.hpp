@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
+#include "manoscope/core/map_picture.hpp"
 #include "manoscope/results/checks.hpp"
 #include "manoscope/results/flow_checks.hpp"
 
@@ -84,6 +85,7 @@ struct Measurement : Checks, FlowChecks {
 
   // What each map was like.
   std::vector<std::string> map;             ///< (n_m) file names
+  Array1 map_pressure;                      ///< (n_m) Pa, as applied; NaN of a map under flow
   Array1 map_tilt_x, map_tilt_z;            ///< (n_m) slope of the rim's plane, m/m
   Array1 map_noise;                         ///< (n_m) m, standard deviation of one pixel on the rim
   Array1 map_missing, map_spikes;           ///< (n_m) fraction of the pixels
@@ -100,6 +102,10 @@ struct Measurement : Checks, FlowChecks {
   // lie. Empty if the result holds no such picture.
   Array1 response_x, response_z;  ///< m, in the channel's frame
   Array2 wall_response;           ///< (n_z, n_x) m
+
+  /// Deflection of every map, n_m or none. Not in result.nc but beside it, in maps.nc
+  /// (map_pictures.hpp).
+  std::vector<MapPicture> map_picture;
 };
 
 }  // namespace manoscope::results

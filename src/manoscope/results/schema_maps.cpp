@@ -19,6 +19,11 @@ std::vector<Dimension> map_dimensions() {
 std::vector<Variable> map_variables() {
   return {
       {"map", {"map"}, "1", "file name of the map", &M::map},
+      {"map_pressure",
+       {"map"},
+       "Pa",
+       "applied pressure, gauge; NaN of a map under flow",
+       &M::map_pressure},
       {"map_tilt_x", {"map"}, "1", "slope of the rim's plane along the flow", &M::map_tilt_x},
       {"map_tilt_z", {"map"}, "1", "slope of the rim's plane across the flow", &M::map_tilt_z},
       {"map_noise", {"map"}, "m", "standard deviation of one pixel on the rim", &M::map_noise},

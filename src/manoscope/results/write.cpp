@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/results/map_pictures.hpp"
 #include "manoscope/results/netcdf.hpp"
 #include "manoscope/results/publication.hpp"
 #include "manoscope/results/tables.hpp"
@@ -16,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const kResultFile = "result.nc";
+const char* const kMapsFile = "maps.nc";
 
 /// True for a name that stays inside the folder: relative, without "..".
 bool stays_inside(const fs::path& name) {
@@ -25,7 +27,7 @@ bool stays_inside(const fs::path& name) {
 
 /// What an earlier result left: the files it names itself, and those every result has.
 std::vector<fs::path> earlier_files(const fs::path& folder) {
-  std::vector<fs::path> names{kResultFile, "pressure.csv", "drops.csv", "report.html"};
+  std::vector<fs::path> names{kResultFile, "pressure.csv", "drops.csv", kMapsFile, "report.html"};
   for (const std::string& name : published_files(folder / kResultFile)) {
     if (stays_inside(name) &&
         std::find(names.begin(), names.end(), fs::path(name)) == names.end()) {
@@ -47,12 +49,18 @@ void write_result(const fs::path& folder, const Measurement& measurement,
     }
     names.push_back(extra.name.generic_string());
   }
+  if (!measurement.map_picture.empty()) names.emplace_back(kMapsFile);
   names.emplace_back(kResultFile);
 
   Publication publication(folder);
   publication.add("pressure.csv", pressure_table(measurement));
   publication.add("drops.csv", drops_table(measurement));
   for (const ExtraFile& extra : extra_files) publication.add(extra.name, extra.bytes);
+  if (!measurement.map_picture.empty()) {
+    publication.add(kMapsFile, [&](const fs::path& path) {
+      write_map_pictures(path, folder / kMapsFile, measurement);
+    });
+  }
   // Added last, published last: where result.nc is, the rest is there already.
   publication.add(kResultFile, [&](const fs::path& path) {
     write_netcdf(path, folder / kResultFile, measurement, names);
@@ -90,6 +98,13 @@ Measurement read_result(const fs::path& folder_or_file) {
                      "Give the folder that a finished measurement wrote");
   }
   return read_netcdf(file);
+}
+
+std::vector<MapPicture> read_maps(const fs::path& folder_or_file, const Measurement& measurement) {
+  std::error_code ignored;
+  const fs::path folder =
+      fs::is_directory(folder_or_file, ignored) ? folder_or_file : folder_or_file.parent_path();
+  return read_map_pictures(folder / kMapsFile, measurement);
 }
 
 }  // namespace manoscope::results

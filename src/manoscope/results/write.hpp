@@ -15,7 +15,8 @@ struct ExtraFile {
   std::string bytes;
 };
 
-/// Writes result.nc, pressure.csv, drops.csv and the extra files to `folder`, all or nothing.
+/// Writes result.nc, pressure.csv, drops.csv, maps.nc (where there are pictures of the maps) and
+/// the extra files to `folder`, all or nothing.
 ///
 /// Everything is first written and synced in a hidden folder inside `folder`; then the old result
 /// is withdrawn (result.nc first) and the new files are renamed into place, result.nc last. A
@@ -40,5 +41,11 @@ bool check_destination(const std::filesystem::path& folder, const std::string& t
 /// @param folder_or_file  the result folder or its result.nc.
 /// @throws InputError if it is missing, not a NetCDF file, or lacks a variable of the schema.
 Measurement read_result(const std::filesystem::path& folder_or_file);
+
+/// The pictures of the maps that stand beside a result, for its `map_picture`.
+/// @return Empty if there are none, or they are of another measurement.
+/// @throws InputError if maps.nc is there and cannot be read.
+std::vector<MapPicture> read_maps(const std::filesystem::path& folder_or_file,
+                                  const Measurement& measurement);
 
 }  // namespace manoscope::results
