@@ -9,6 +9,7 @@
 
 #include "manoscope/report/html_checks.hpp"
 #include "manoscope/report/html_flow.hpp"
+#include "manoscope/report/html_interactive.hpp"
 #include "manoscope/report/html_style.hpp"
 #include "manoscope/report/html_tables.hpp"
 #include "manoscope/report/html_text.hpp"
@@ -38,6 +39,14 @@ std::string agreement_sentence(const Measurement& m) {
       "resistance of "
       "the measured gap, within the expanded uncertainty of their difference.</p>\n",
       n_agree, n_judged);
+}
+
+/// How many doubts there are, for the summary.
+std::string warnings_sentence(const Measurement& m, const std::vector<std::string>& notes) {
+  const std::size_t n = m.warnings.size() + notes.size();
+  if (n == 0) return {};
+  return fmt::format("<p><a href=\"#warnings\">{} {}</a> below.</p>\n", n,
+                     n == 1 ? "warning" : "warnings");
 }
 
 std::string warnings_list(const Measurement& m, const std::vector<std::string>& notes) {
@@ -104,12 +113,13 @@ std::string text_details(const char* summary, const std::string& text) {
 }  // namespace
 
 std::string html_page(const Measurement& m, const std::vector<ShownFigure>& shown,
-                      const std::vector<std::string>& notes) {
+                      const std::vector<std::string>& notes, bool interactive) {
   const std::string name = escape_html(m.title.empty() ? "Measurement" : m.title);
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   page += "<title>" + name + " – pressure in the channel</title>\n";
-  page += std::string("<style>") + kStyle + "</style>\n</head>\n<body>\n<main>\n";
+  page += std::string("<style>") + kStyle + "</style>\n" +
+          (interactive ? interactive_head() : std::string()) + "</head>\n<body>\n<main>\n";
   page += "<h1>" + name + "</h1>\n";
   page +=
       "<p class=\"by\">Gauge pressure inside a micro-channel, read off the deflection of its "
@@ -128,10 +138,12 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
       "<a href=\"#maps\">Maps</a><a href=\"#flags\">Flags</a><a href=\"#open\">Opening the "
       "result</a>"
       "<a href=\"#provenance\">Provenance</a></nav>\n";
-  page += "<section class=\"card\" id=\"summary\">\n" + facts_list(m) + agreement_sentence(m) +
-          verdict_sentence(m) + "</section>\n";
+  page += "<section class=\"card\" id=\"summary\">\n" + agreement_sentence(m) +
+          verdict_sentence(m) + warnings_sentence(m, notes) + facts_list(m) + "</section>\n";
   page += runs_table(m);
+  page += reading_list(m);
   page += warnings_list(m, notes);
+  if (interactive) page += interactive_place(m);
   page += figures_part(shown);
   page += flow;
   if (const auto budget = budget_table(m); !budget.empty()) {
@@ -150,7 +162,9 @@ std::string html_page(const Measurement& m, const std::vector<ShownFigure>& show
   page += text_details("Settings in force", m.settings);
   page += text_details("experiment.toml", m.experiment);
   page += text_details("Input files and their SHA-256", m.inputs);
-  return page + "</main>\n</body>\n</html>\n";
+  page += "</main>\n";
+  if (interactive) page += interactive_tail(m);
+  return page + "</body>\n</html>\n";
 }
 
 }  // namespace manoscope::report

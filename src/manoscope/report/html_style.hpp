@@ -6,7 +6,7 @@ namespace manoscope::report {
 inline constexpr const char* kStyle = R"(
 :root{--ink:#1c2430;--soft:#5a6675;--line:#d5dbe2;--paper:#ffffff;--ground:#f4f6f8;--accent:#00568c;
 --good:#00694c;--half:#7a5300;--bad:#a8320f;--share:0%;--bar:#cfe3f1;color-scheme:light dark}
-@media (prefers-color-scheme:dark){:root{--ink:#e4e9ef;--soft:#a3afbd;--line:#3a4552;--paper:#1d242d;
+@media screen and (prefers-color-scheme:dark){:root{--ink:#e4e9ef;--soft:#a3afbd;--line:#3a4552;--paper:#1d242d;
 --ground:#141a21;--accent:#7cc4f0;--good:#5fd1a8;--half:#f0c05a;--bad:#ff9b78;--bar:#24506e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--ground);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
@@ -21,6 +21,8 @@ a{color:var(--accent)}
 section.card,div.scroll{background:var(--paper);border:1px solid var(--line);border-radius:8px}
 section.card{padding:.4rem 1.1rem}
 .facts{display:grid;grid-template-columns:max-content 1fr;gap:.25rem 1.2rem;margin:.6rem 0}
+section.card p{max-width:none;margin:.4rem 0}
+@media (min-width:1000px){.facts.short{grid-template-columns:max-content 1fr max-content 1fr}}
 .facts dt{color:var(--soft)}
 .facts dd{margin:0}
 div.scroll{overflow-x:auto;margin:1rem 0;padding:.2rem .8rem .6rem}
@@ -50,7 +52,15 @@ details{margin:.6rem 0}
 summary{cursor:pointer;font-weight:600}
 code{font-family:ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;font-size:.94em}
 @media (max-width:900px){table{font-size:.86rem}th,td{padding:.3rem .4rem}}
-@media print{body{background:#fff}main{max-width:none}figure,div.scroll{break-inside:avoid}}
+@media screen{figure,div.scroll{content-visibility:auto;contain-intrinsic-size:auto 480px}}
+@page{size:A4;margin:13mm 12mm}
+@media print{body{background:#fff;font-size:10pt}main{max-width:none;padding:0}nav{display:none}
+h1{font-size:17pt}h2{font-size:13pt;break-after:avoid}p.caption{font-size:8.5pt;break-after:avoid;max-width:none}
+div.figures{display:block}figure{break-inside:avoid;margin:0 0 5mm}figure svg{max-width:135mm;max-height:120mm}
+figure.wide svg{max-width:100%}figcaption{font-size:8.5pt;max-width:none}
+div.scroll,div.tall{overflow:visible;max-height:none;padding:0;border:0}div.tall thead th{position:static}
+table{font-size:6.8pt}th,td{padding:.1rem .13rem;white-space:normal}thead th{overflow-wrap:anywhere;hyphens:auto}tr{break-inside:avoid}
+pre{max-height:none;white-space:pre-wrap;font-size:8pt}}
 )";
 
 }  // namespace manoscope::report

@@ -93,7 +93,7 @@ Index middle_station(const Measurement& m, Index run) {
 
 std::string facts_list(const Measurement& m) {
   const DisplayUnit gap = length_unit(m.channel_height);
-  std::string list = "<dl class=\"facts\">\n";
+  std::string list = "<dl class=\"facts short\">\n";
   list += fact("Channel",
                fmt::format("{} long, {} wide", given(m.channel_length), given(m.channel_width)));
   list += fact(
@@ -116,9 +116,14 @@ std::string facts_list(const Measurement& m) {
                  fmt::format("{}, {} apart", m.x.size(), with_unit(spacing, 3, length_unit)));
   }
   list += fact("Maps", fmt::format("{}", m.map.size()));
-  if (!m.tube_law.empty()) list += fact("Tube law", escape_html(m.tube_law));
-  if (!m.reading.empty() && !m.run.empty()) list += fact("p(x) read", escape_html(m.reading));
   return list + "</dl>\n";
+}
+
+std::string reading_list(const Measurement& m) {
+  std::string list;
+  if (!m.reading.empty() && !m.run.empty()) list += fact("p(x) read", escape_html(m.reading));
+  if (!m.tube_law.empty()) list += fact("Tube law", escape_html(m.tube_law));
+  return list.empty() ? list : "<dl class=\"facts\">\n" + list + "</dl>\n";
 }
 
 std::string runs_table(const Measurement& m) {

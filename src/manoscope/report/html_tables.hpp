@@ -10,6 +10,8 @@ namespace manoscope::report {
 
 /// What was measured: channel, fluid, calibration, runs.
 std::string facts_list(const results::Measurement& measurement);
+/// How p(x) was read, and the tube law, in words.
+std::string reading_list(const results::Measurement& measurement);
 /// One row a run: Q, Re, extracted and resistance drop with expanded uncertainty, E_n and verdict,
 /// transducer minus parasitic, share of the test section that was read.
 std::string runs_table(const results::Measurement& measurement);

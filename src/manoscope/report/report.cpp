@@ -36,7 +36,7 @@ std::vector<results::ExtraFile> make_report(const results::Measurement& measurem
     if (!drawn->pdf.empty()) files.push_back({"figures/" + figure.name + ".pdf", drawn->pdf});
     shown.push_back({std::move(figure), std::move(drawn->svg)});
   }
-  files.push_back({"report.html", html_page(measurement, shown, notes)});
+  files.push_back({"report.html", html_page(measurement, shown, notes, options.interactive)});
   return files;
 }
 

@@ -9,11 +9,14 @@
 namespace manoscope::report {
 
 struct ReportOptions {
-  bool pdf = false;  ///< figures as PDF too
+  bool pdf = false;         ///< figures as PDF too
+  bool interactive = true;  ///< maps, numbers and a script in the page
 
   template <class Visitor>
   void describe(Visitor&& visit) {
     visit("pdf", pdf, "write each figure as PDF too");
+    visit("interactive", interactive,
+          "report.html holds the maps and a script to explore them; a small page without");
   }
 };
 
