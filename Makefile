@@ -42,12 +42,16 @@ export CCACHE_BASEDIR ?= $(CURDIR)
 export CCACHE_NOHASHDIR ?= 1
 
 install = $(if $(filter yes,$(PACKAGES)),tools/install_packages.sh,@: not installing)
+# Node, npm and a browser may well be there from elsewhere, which Debian's would quarrel with.
+has = $(shell command -v $(1))
+install_web = $(if $(and $(call has,node),$(call has,npm),$(or $(CHROMIUM),$(call has,chromium))),:,$(install) web)
 configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 # The program alone needs no test framework: a new folder starts without the tests.
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models simulation simulation-check check format format-check layers \
+.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models simulation simulation-check \
+        web web-check check format format-check layers \
         scripts tidy tidy-changed asan asan-changed asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -131,6 +135,14 @@ simulation-check: ## its flows against independent solutions, in three dimension
 	@$(configure) -DMANOSCOPE_TESTS=ON
 	@cmake --build $(BUILD) -j $(JOBS) --target navier_stokes_test
 	$(BUILD)/tests/navier_stokes_test --gtest_also_run_disabled_tests
+
+web: ## build script and style of report.html, web/dist, from web/
+	@$(install_web)
+	@tools/web.sh build
+
+web-check: all ## types and tests of web/, web/dist as built, report.html in a browser
+	@$(install_web)
+	@tools/web.sh check $(BUILD)/manoscope
 
 check: format-check layers scripts tidy ## format, layers, scripts and clang-tidy
 
