@@ -75,6 +75,13 @@ def table_of(rows):
     return "\n".join(lines)
 
 
+def beyond_stated(rows):
+    """The rows whose error is larger than the error that the model states of itself."""
+    return [row for row in rows
+            if row["stated_percent"]
+            and float(row["largest_error_percent"]) > float(row["stated_percent"])]
+
+
 def replaced(page, table):
     """The page with another table between its markers."""
     before, rest = page.split(BEGIN)
@@ -86,11 +93,16 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     rows, docs = read_rows(sys.argv[1]), pathlib.Path(sys.argv[2])
+    for row in beyond_stated(rows):
+        print("{sample} at {flow_rate_mL_min} mL/min: {model} is off by {largest_error_percent} %, "
+              "and states {stated_percent} %".format(**row), file=sys.stderr)
     drawn = subprocess.run(["gnuplot"], input=script_of(rows), text=True, capture_output=True,
                            check=True)
     (docs / "images" / "flow_models.svg").write_text(drawn.stdout, encoding="utf-8")
     page = docs / "flow-models.md"
     page.write_text(replaced(page.read_text(encoding="utf-8"), table_of(rows)), encoding="utf-8")
+    if beyond_stated(rows):
+        sys.exit(1)
 
 
 if __name__ == "__main__":

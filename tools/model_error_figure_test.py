@@ -6,9 +6,10 @@ import unittest
 import model_error_figure as figure
 
 
-def row(sample, flow_rate, reduced, model, error, drop):
+def row(sample, flow_rate, reduced, model, error, drop, stated=""):
     return {"sample": sample, "flow_rate_mL_min": str(flow_rate), "reduced_reynolds": str(reduced),
-            "model": model, "largest_error_percent": str(error), "section_drop_percent": str(drop)}
+            "model": model, "largest_error_percent": str(error), "section_drop_percent": str(drop),
+            "stated_percent": str(stated)}
 
 
 ROWS = [row("S1", 70, 8.0, "momentum", 5.5, 3.9), row("S1", 4, 0.5, "momentum", 0.25, -0.2),
@@ -31,6 +32,11 @@ class ModelErrorFigure(unittest.TestCase):
         self.assertEqual(len(lines), 4)
         self.assertIn("| S1 | 4 | 0.5 | 1.7 (+2.5) | - | 0.25 (-0.2) | - | - | - |", lines[2])
         self.assertIn("| S1 | 70 | 8 | - | - | 5.5 (+3.9) |", lines[3])
+
+    def test_errors_beyond_what_the_model_states_are_found(self):
+        within = row("S1", 4, 0.5, "momentum", 0.5, 0.1, 0.6)
+        beyond = row("S1", 70, 8.0, "momentum", 6.5, 4.0, 6.4)
+        self.assertEqual(figure.beyond_stated([*ROWS, within, beyond]), [beyond])
 
     def test_the_page_keeps_what_stands_around(self):
         page = f"a\n{figure.BEGIN}\nold\n{figure.END}\nb\n"

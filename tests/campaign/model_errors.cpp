@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include "manoscope/core/error.hpp"
@@ -19,12 +20,14 @@ namespace manoscope::campaign {
 namespace {
 
 constexpr const char* kHeader =
-    "sample,flow_rate_mL_min,reduced_reynolds,model,largest_error_percent,section_drop_percent\n";
+    "sample,flow_rate_mL_min,reduced_reynolds,model,largest_error_percent,section_drop_percent,"
+    "stated_percent\n";
 
 /// What a model says against the reference, in % of the drop of the channel: the largest difference
 /// of p along x, and that of the drop over the paper's test section.
+/// @param stated  half width of flow::model_error(), nothing where there is none.
 std::string row_of(const std::string& head, const char* name, const Array1& x, const Array1& p,
-                   const Array1& reference) {
+                   const Array1& reference, const std::optional<double>& stated) {
   const double drop = reference[0] - reference[reference.size() - 1];
   const auto section = [&](const Array1& values) {
     Index first = 0, last = 0;
@@ -32,9 +35,10 @@ std::string row_of(const std::string& head, const char* name, const Array1& x, c
     (x - 13.2e-3).abs().minCoeff(&last);
     return values[first] - values[last];
   };
-  return fmt::format("{},{},{:.4f},{:.4f}\n", head, name,
+  return fmt::format("{},{},{:.4f},{:.4f},{}\n", head, name,
                      100.0 * (p - reference).abs().maxCoeff() / drop,
-                     100.0 * (section(p) / section(reference) - 1.0));
+                     100.0 * (section(p) / section(reference) - 1.0),
+                     stated ? fmt::format("{:.4f}", 100.0 * *stated) : "");
 }
 
 std::string rows_of(const std::string& sample, const flow::FlowCase& flow) {
@@ -55,11 +59,12 @@ std::string rows_of(const std::string& sample, const flow::FlowCase& flow) {
       continue;
     }
     rows += row_of(head, std::string(info.name).c_str(), flow.x,
-                   solve(info.model, flow::InletProfile::developed), reference);
+                   solve(info.model, flow::InletProfile::developed), reference,
+                   flow::model_error(info.model, flow).half_width);
   }
   const Array1 uniform = solve(flow::FlowModel::section_march, flow::InletProfile::uniform);
   if (uniform.isFinite().all()) {
-    rows += row_of(head, "uniform inlet", flow.x, uniform, reference);
+    rows += row_of(head, "uniform inlet", flow.x, uniform, reference, std::nullopt);
   }
   return rows;
 }
