@@ -24,6 +24,41 @@ std::string share_text(double part, double whole) {
   return fmt::format("{:.2g} %", std::abs(part) / std::abs(whole) * 100.0);
 }
 
+std::string verdict(const ModelAgreement& found, const Estimate& extracted,
+                    const CompareModelsOptions& options, const char* who) {
+  const double whole = extracted.value;
+  const std::string expanded = share_text(kExpansion * found.uncertainty, whole);
+  const std::string sides =
+      fmt::format("the {} gives {} {} than the wall", who, share_text(found.difference, whole),
+                  found.difference < 0.0 ? "less" : "more");
+  const std::string along =
+      fmt::format("along x p differs by more than its bars (chi-square {:.0f} of {:.0f})",
+                  found.along.value, found.along.dof);
+  std::string words;
+  switch (found.agreement) {
+    case Agreement::agree:
+      words = fmt::format("agree within {}: {} (E_n {:.2f})", expanded, sides, found.en_number);
+      break;
+    case Agreement::drop_only:
+      words = fmt::format("only the drop agrees, within {}: {} (E_n {:.2f}), but {}", expanded,
+                          sides, found.en_number, along);
+      break;
+    case Agreement::differ:
+      words = fmt::format("do not agree: {}, {:.1f} times the expanded uncertainty of {}", sides,
+                          found.en_number, expanded);
+      if (found.along.tail < options.along_tail) words += "; " + along;
+      break;
+    case Agreement::no_verdict:
+      break;
+  }
+  if (!found.valid) {
+    words += fmt::format("; at Re h/l = {:.2g} the model itself may be {:.2g} % off",
+                         found.error.reduced_reynolds, found.error.half_width * 100.0);
+  }
+  if (found.separated) words += "; the march met backflow";
+  return words;
+}
+
 class Comparison {
  public:
   Comparison(const FlowSetup& setup, FlowRate flow_rate, const Profile& state,
@@ -86,12 +121,8 @@ class Comparison {
     if (setup_.uncertainty.height == Length{}) {
       return without_verdict(found, "the gap has no stated uncertainty");
     }
-    found.en_number = std::abs(found.difference) / (kExpansion * found.uncertainty);
     take_pieces(run, found);
-    found.agreement = found.en_number > 1.0                    ? Agreement::differ
-                      : found.along.tail < options_.along_tail ? Agreement::drop_only
-                                                               : Agreement::agree;
-    found.words = verdict(found, extracted);
+    judge(found, extracted, options_);
     return found;
   }
 
@@ -121,40 +152,6 @@ class Comparison {
     found.agreement = Agreement::no_verdict;
     found.words = fmt::format("no verdict: {}", reason);
     return found;
-  }
-
-  std::string verdict(const ModelAgreement& found, const Estimate& extracted) const {
-    const double whole = extracted.value;
-    const std::string expanded = share_text(kExpansion * found.uncertainty, whole);
-    const std::string sides =
-        fmt::format("the model gives {} {} than the wall", share_text(found.difference, whole),
-                    found.difference < 0.0 ? "less" : "more");
-    const std::string along =
-        fmt::format("along x p differs by more than its bars (chi-square {:.0f} of {:.0f})",
-                    found.along.value, found.along.dof);
-    std::string words;
-    switch (found.agreement) {
-      case Agreement::agree:
-        words = fmt::format("agree within {}: {} (E_n {:.2f})", expanded, sides, found.en_number);
-        break;
-      case Agreement::drop_only:
-        words = fmt::format("only the drop agrees, within {}: {} (E_n {:.2f}), but {}", expanded,
-                            sides, found.en_number, along);
-        break;
-      case Agreement::differ:
-        words = fmt::format("do not agree: {}, {:.1f} times the expanded uncertainty of {}", sides,
-                            found.en_number, expanded);
-        if (found.along.tail < options_.along_tail) words += "; " + along;
-        break;
-      case Agreement::no_verdict:
-        break;
-    }
-    if (!found.valid) {
-      words += fmt::format("; at Re h/l = {:.2g} the model itself may be {:.2g} % off",
-                           found.error.reduced_reynolds, found.error.half_width * 100.0);
-    }
-    if (found.separated) words += "; the march met backflow";
-    return words;
   }
 
   FlowSetup setup_;
@@ -193,6 +190,15 @@ std::vector<Correction> corrections(const Comparison& comparison, const FlowSetu
 }
 
 }  // namespace
+
+void judge(ModelAgreement& found, const Estimate& extracted, const CompareModelsOptions& options,
+           const char* who) {
+  found.en_number = std::abs(found.difference) / (kExpansion * found.uncertainty);
+  found.agreement = found.en_number > 1.0                   ? Agreement::differ
+                    : found.along.tail < options.along_tail ? Agreement::drop_only
+                                                            : Agreement::agree;
+  found.words = verdict(found, extracted, options, who);
+}
 
 void CompareModelsOptions::validate() const {
   const auto refuse = [](const char* name, double value, const char* bound) {

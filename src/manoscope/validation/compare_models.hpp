@@ -61,6 +61,12 @@ struct ModelAgreement {
   std::string words;  ///< the verdict for a person
 };
 
+/// E_n, agreement and verdict of a comparison whose difference, uncertainty and chi-square along x
+/// are there: the one rule of flow models and simulations.
+/// @param who  what is compared, for the words.
+void judge(ModelAgreement& found, const Estimate& extracted, const CompareModelsOptions& options,
+           const char* who = "model");
+
 /// What one physical effect adds to the drop.
 struct Correction {
   std::string name;

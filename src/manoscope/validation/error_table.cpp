@@ -10,15 +10,15 @@
 namespace manoscope::validation {
 namespace {
 
-std::string flow_noise(Index ix) {
-  return fmt::format("noise of the flow profile at station {}", ix);
-}
-
 Array1 times(const Matrix& weights, const Array1& values) {
   return (weights * values.matrix()).array();
 }
 
 }  // namespace
+
+std::string flow_noise(Index station) {
+  return fmt::format("noise of the flow profile at station {}", station);
+}
 
 void ErrorTable::add(const std::string& variable, const std::string& source, const Array1& effect) {
   MANO_ASSERT(effect.size() == n_);

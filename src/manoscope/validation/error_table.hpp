@@ -33,6 +33,9 @@ class ErrorTable {
   std::vector<ErrorMode> modes_;
 };
 
+/// Name of the error variable that is the noise of one station of a run's profile.
+std::string flow_noise(Index station);
+
 /// Which errors of a model go into a table.
 struct ModelErrors {
   bool gap_and_fluid = true;  ///< 2 h0, and viscosity and flow rate as told below
