@@ -7,6 +7,7 @@
 #include "manoscope/core/map_picture.hpp"
 #include "manoscope/results/checks.hpp"
 #include "manoscope/results/flow_checks.hpp"
+#include "manoscope/results/simulation.hpp"
 
 namespace manoscope::results {
 
@@ -106,6 +107,10 @@ struct Measurement : Checks, FlowChecks {
   /// Deflection of every map, n_m or none. Not in result.nc but beside it, in maps.nc
   /// (map_pictures.hpp).
   std::vector<MapPicture> map_picture;
+
+  /// Navier-Stokes in the measured shapes: in files of their own (read_simulations()), no part of
+  /// result.nc.
+  std::vector<Simulation> simulations;
 };
 
 }  // namespace manoscope::results

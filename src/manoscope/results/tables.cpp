@@ -16,20 +16,6 @@
 namespace manoscope::results {
 namespace {
 
-std::string cell(double value) {
-  return std::isnan(value) ? std::string() : fmt::format("{}", value);
-}
-
-std::string cell(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    if (letter == '"') quoted += '"';
-    quoted += letter;
-  }
-  return quoted + '"';
-}
-
 /// "true section" as a column is called: true_section.
 std::string as_column(std::string name) {
   std::replace_if(
@@ -38,10 +24,24 @@ std::string as_column(std::string name) {
 }
 
 void add_numbers(std::string& table, std::initializer_list<double> values) {
-  for (const double value : values) table += ',' + cell(value);
+  for (const double value : values) table += ',' + csv_cell(value);
 }
 
 }  // namespace
+
+std::string csv_cell(double value) {
+  return std::isnan(value) ? std::string() : fmt::format("{}", value);
+}
+
+std::string csv_cell(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char letter : text) {
+    if (letter == '"') quoted += '"';
+    quoted += letter;
+  }
+  return quoted + '"';
+}
 
 std::string flag_names(FlagBits bits) {
   std::string names;
@@ -67,7 +67,7 @@ std::string pressure_table(const Measurement& m) {
       "pressure_upper_Pa,deflection_m,flags\n";
   for (std::size_t run = 0; run < m.run.size(); ++run) {
     const auto ir = static_cast<Index>(run);
-    const std::string head = cell(m.run[run]) + ',' + cell(m.flow_rate(ir));
+    const std::string head = csv_cell(m.run[run]) + ',' + csv_cell(m.flow_rate(ir));
     for (Index ix = 0; ix < m.x.size(); ++ix) {
       table += head;
       add_numbers(table,
@@ -129,11 +129,11 @@ std::string drops_table(const Measurement& m) {
   for (const Column& column : columns) table += ',' + column.name;
   table += ",verdict\n";
   for (std::size_t run = 0; run < m.run.size(); ++run) {
-    table += cell(m.run[run]);
+    table += csv_cell(m.run[run]);
     for (const Column& column : columns) {
-      table += ',' + cell(column.value(static_cast<Index>(run)));
+      table += ',' + csv_cell(column.value(static_cast<Index>(run)));
     }
-    table += ',' + (run < m.verdict.size() ? cell(m.verdict[run]) : std::string()) + '\n';
+    table += ',' + (run < m.verdict.size() ? csv_cell(m.verdict[run]) : std::string()) + '\n';
   }
   return table;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "manoscope/results/measurement.hpp"
 
@@ -25,6 +26,10 @@ std::string pressure_table(const Measurement& measurement);
 /// each effect adds to the drop, and drop, E_n and p value by each flow model; at last the verdict
 /// in words. Conventions as in pressure_table().
 std::string drops_table(const Measurement& measurement);
+
+/// A cell as these tables have it.
+std::string csv_cell(double value);
+std::string csv_cell(std::string_view text);
 
 /// Names of the bits, joined by '|'; "" for 0. A bit without a name reads "bit_7".
 std::string flag_names(FlagBits bits);
