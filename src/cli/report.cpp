@@ -1,8 +1,10 @@
 // manoscope report OUT: report.html and the figures again from result.nc.
+#include "manoscope/report/report.hpp"
+
 #include <fmt/format.h>
 
 #include "commands.hpp"
-#include "manoscope/report/report.hpp"
+#include "manoscope/results/simulation_file.hpp"
 #include "manoscope/results/write.hpp"
 
 namespace manoscope::cli {
@@ -19,10 +21,12 @@ void add_report(Program& program) {
   command.action([args](const Context& context) {
     auto measurement = results::read_result(args->result);
     measurement.map_picture = results::read_maps(args->result, measurement);
+    auto stored = results::read_simulations(args->result, measurement);
+    measurement.simulations = std::move(stored.simulations);
+    for (const std::string& note : stored.left_out) remark(context, "note: " + note);
     results::write_result(args->result, measurement,
                           report::make_report(measurement, args->options));
     print((args->result / "report.html").string() + "\n");
-    static_cast<void>(context);
   });
 }
 

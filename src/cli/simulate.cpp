@@ -1,91 +1,151 @@
-// manoscope simulate --shape SHAPE: Navier-Stokes in a given shape, by a program of its own.
+// manoscope simulate EXPERIMENT --run RUN, or --shape SHAPE: Navier-Stokes in the measured or a
+// given shape, by a program of its own.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdlib>
+#include <algorithm>
 #include <filesystem>
 
 #include "commands.hpp"
 #include "manoscope/core/atomic_file.hpp"
-#include "manoscope/core/child_process.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/pipeline/simulate_runs.hpp"
+#include "manoscope/results/simulation_file.hpp"
+#include "manoscope/results/simulation_table.hpp"
+#include "measured_simulations.hpp"
 #include "navier_stokes/simulation_options.hpp"
 #include "simulate_summary.hpp"
+#include "solver_program.hpp"
 
 namespace manoscope::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProgram = "manoscope-navier-stokes";
+struct Args {
+  std::string experiment;
+  std::vector<std::string> runs;
+  fs::path shape, out, csv, vtu;
+  navier_stokes::SimulationOptions options;
+  pipeline::MeasureOptions measure;
+};
 
-/// The solver beside this program, or on PATH.
-fs::path find_solver() {
-  std::error_code error;
-  fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
-  if (fs::is_regular_file(beside, error) && ::access(beside.c_str(), X_OK) == 0) return beside;
-  if (const auto found = find_program(kProgram)) return *found;
-  throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
-                   "Run make simulation, which installs deal.II (tools/install_packages.sh "
-                   "navier-stokes) and builds it beside manoscope");
+void simulate_shape(Args args, const Context& context) {
+  if (!args.runs.empty()) {
+    throw InputError("--run", "belongs to an experiment, and there is a --shape",
+                     "Give either an experiment and --run, or --shape");
+  }
+  if (args.options.inlet == "both") {
+    throw InputError("--inlet", "both ends of what is plausible are for experiments",
+                     "Choose developed or uniform");
+  }
+  args.options.validate();
+  if (!args.csv.empty()) args.out = args.csv;
+  const std::string answer = ask_solver(args.shape, args.options, args.vtu, context.monitor);
+  if (!args.out.empty()) write_file_atomically(args.out, simulation_table(answer));
+  print(context.json ? answer : simulation_text(answer, context.quiet));
+  if (const std::string doubt = simulation_doubt(answer); !doubt.empty()) remark(context, doubt);
+  if (!args.out.empty()) remark(context, fmt::format("p(x) in {}", args.out.string()));
 }
 
-/// What the solver says, as JSON.
-std::string ask_solver(const std::vector<std::string>& words, const Monitor& monitor) {
-  constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
-  constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
-  ChildProcess::Options options;
-  options.wall_seconds = kLongest;
-  // One thread: the sparse solver's BLAS would otherwise take all there are, for little.
-  options.environment = {"OMP_NUM_THREADS=1"};
-  options.stop_requested = monitor.stop_requested;
-  auto solver = ChildProcess::start(words, options);
-  if (!solver) throw InputError(words.front(), "cannot be started", "Check its permissions");
-  std::string answer = solver->read_all(kLargest);
-  const ChildEnd end = solver->wait();
-  monitor.checkpoint();
-  if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
-  if (end.succeeded()) return answer;
-  throw InternalError(
-      end.signal == SIGKILL
-          ? fmt::format("{} was killed: the machine may be short of memory; take "
-                        "fewer cells",
-                        kProgram)
-          : fmt::format("{} ended with exit code {}, signal {}; run it by itself to "
-                        "see its message",
-                        kProgram, end.exit_code, end.signal));
+/// Refuses options that the experiment tells itself.
+void leave_to_experiment(const navier_stokes::SimulationOptions& options) {
+  const auto given = list_options(options),
+             unset = list_options(navier_stokes::SimulationOptions{});
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    for (const char* name :
+         {"height", "width", "flow-rate", "viscosity", "density", "wall-shape"}) {
+      if (given[i].name != name || given[i].value == unset[i].value) continue;
+      throw InputError(fmt::format("--{}", name), "is told by the experiment", "Leave it out");
+    }
+  }
+}
+
+/// FILE for one run; for several FILE with the label of each before its ending.
+fs::path vtu_file(const fs::path& file, const std::string& run, bool one) {
+  if (one || file.empty()) return file;
+  const fs::path label = results::simulation_file(run, 2).stem();  // safe on every file system
+  const std::string name = label.string().substr(0, label.string().size() - 3);
+  return file.parent_path() /
+         fmt::format("{}_{}{}", file.stem().string(), name, file.extension().string());
+}
+
+void simulate_experiment(Args args, const Context& context) {
+  leave_to_experiment(args.options);
+  args.options.validate_solution();
+  if (args.runs.empty()) {
+    throw InputError("--run", "is not given", "Name a run, as --run Q70, or --run all");
+  }
+  require_solver();
+  const auto experiment = experiment::read_experiment(fs::path(args.experiment));
+  const pipeline::ReadyRuns ready =
+      pipeline::ready_runs(experiment, args.runs, args.measure, context.threads, context.monitor);
+  if (!args.out.empty()) results::check_result_of(args.out, experiment.text, ready.inputs);
+  const pipeline::SimulateOptions wanted{args.options.mesh.dim, args.options.inlet,
+                                         args.options.mesh.tolerance};
+  const std::size_t n = ready.calibration.runs.size();
+  std::vector<results::Simulation> done;
+  for (std::size_t i = 0; i < n; ++i) {
+    const fs::path vtu = vtu_file(args.vtu, ready.calibration.runs[i].name, n == 1);
+    const auto solver = [&](const pipeline::GivenFlow& flow) {
+      return solve_flow(flow, args.options, flow.leading ? vtu : fs::path(), context.monitor);
+    };
+    results::Simulation simulation =
+        pipeline::simulate_run(experiment, ready, i, wanted, solver, context.monitor);
+    simulation.cells = solver_settings(args.options);
+    // Each as soon as it is there: hours of other runs are not lost with a later one.
+    if (!args.out.empty()) {
+      const fs::path file = results::write_simulation(args.out, simulation);
+      remark(context, fmt::format("{} in {}", simulation.run, file.string()));
+    }
+    for (const std::string& doubt : pipeline::simulation_doubts(simulation, experiment)) {
+      remark(context, "note: " + doubt);
+    }
+    done.push_back(std::move(simulation));
+  }
+  if (!args.csv.empty()) write_file_atomically(args.csv, results::simulations_table(done));
+  const bool one = args.runs.size() == 1 && args.runs.front() != "all";
+  print(context.json ? simulations_json(done, one) : simulations_text(done, context.quiet));
+  if (!args.out.empty()) {
+    remark(context,
+           fmt::format("manoscope report {} draws them into its figures", args.out.string()));
+  }
 }
 
 }  // namespace
 
 void add_simulate(Program& program) {
-  struct Args {
-    fs::path shape, out, vtu;
-    navier_stokes::SimulationOptions options;
-  };
   auto args = std::make_shared<Args>();
-  Command command =
-      program.command("simulate", "Solve the Navier-Stokes equations in a given shape");
-  command.option(
-      "--shape", args->shape,
-      "table with the columns x and zeta, the width-averaged deflection, with their units", true);
-  command.option("-o,--output", args->out, "writes p(x) and wall shear to a CSV file", false);
+  Command command = program.command(
+      "simulate", "Solve the Navier-Stokes equations in the measured shape, or a given one");
+  command.optional_positional("experiment", args->experiment,
+                              "folder with experiment.toml, or the file itself");
+  command.option("--run", args->runs, "run of the experiment, or all; may be given several times",
+                 false);
+  command.option("--shape", args->shape,
+                 "instead of an experiment: table with the columns x and zeta, the width-averaged "
+                 "deflection, with their units",
+                 false);
+  command.option("-o,--output", args->out,
+                 "of an experiment: result folder of measure, where the simulation is kept; of a "
+                 "shape: CSV file",
+                 false);
+  command.option("--csv", args->csv, "writes p(x) and wall shear at every station to a CSV file",
+                 false);
   command.option("--vtu", args->vtu, "writes velocity and pressure for ParaView", false);
   command.options(args->options, "Simulation");
+  command.options(args->measure, "Measurement of the shape");
   command.action([args](const Context& context) {
-    args->options.validate();
-    std::vector<std::string> words{find_solver().string(), args->shape.string()};
-    for (const OptionInfo& option : list_options(args->options)) {
-      words.push_back("--" + option.name);
-      words.push_back(option.value);
+    if (args->experiment.empty() == args->shape.empty()) {
+      throw InputError("simulate",
+                       args->shape.empty() ? "neither an experiment nor a --shape is given"
+                                           : "an experiment and a --shape are given",
+                       "Give an experiment and --run, or --shape SHAPE.csv");
     }
-    if (!args->vtu.empty()) words.insert(words.end(), {"--vtu", args->vtu.string()});
-    const std::string answer = ask_solver(words, context.monitor);
-    if (!args->out.empty()) write_file_atomically(args->out, simulation_table(answer));
-    print(context.json ? answer : simulation_text(answer, context.quiet));
-    if (const std::string doubt = simulation_doubt(answer); !doubt.empty()) remark(context, doubt);
-    if (!args->out.empty()) remark(context, fmt::format("p(x) in {}", args->out.string()));
+    if (args->shape.empty()) {
+      simulate_experiment(*args, context);
+    } else {
+      simulate_shape(*args, context);
+    }
   });
 }
 

@@ -25,6 +25,7 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
   object["wall_pressure_numerical_uncertainty_Pa"] = list(flow.wall_pressure_uncertainty);
   object["mean_pressure_Pa"] = list(flow.mean_pressure);
   object["mean_pressure_numerical_uncertainty_Pa"] = list(flow.mean_pressure_uncertainty);
+  object["coarse_mean_pressure_Pa"] = list(flow.coarse_mean_pressure);
   object["floor_pressure_Pa"] = list(flow.floor_pressure);
   object["wall_shear_Pa"] = list(flow.wall_shear);
   object["floor_shear_Pa"] = list(flow.floor_shear);
@@ -32,7 +33,7 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
   object["newton_steps"] = flow.n_newton_steps;
   object["largest_linear_residual"] = flow.largest_residual;
   object["seconds"] = effort.seconds;
-  object["peak_MB"] = effort.peak_MB;
+  object["peak_MB"] = effort.peak_megabytes;
   return object.dump() + '\n';
 }
 

@@ -206,6 +206,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
     value = given.channel.height.si() * gap(value / given.channel.height.si(), 0.0);
   }
   result.mean_pressure = readings.mean_pressure;
+  result.coarse_mean_pressure = coarse_readings.mean_pressure;
   result.wall_pressure = readings.wall_pressure;
   result.floor_pressure = readings.floor_pressure;
   result.wall_shear = readings.wall_shear;

@@ -31,12 +31,13 @@ struct SimulatedChannel {
 /// What Navier-Stokes makes of it. Arrays are (stations), SI, p = 0 in the mean at x = length.
 struct SimulatedFlow {
   int dim = 2;
-  Array1 x, gap;          ///< gap at z = 0
-  Array1 mean_pressure;   ///< over the section
-  Array1 wall_pressure;   ///< on the roof at z = 0
-  Array1 floor_pressure;  ///< on the floor at z = 0
-  Array1 wall_shear;      ///< on the roof at z = 0, > 0 with the flow
-  Array1 floor_shear;     ///< on the floor at z = 0
+  Array1 x, gap;                ///< gap at z = 0
+  Array1 mean_pressure;         ///< over the section
+  Array1 coarse_mean_pressure;  ///< the same on the coarser mesh
+  Array1 wall_pressure;         ///< on the roof at z = 0
+  Array1 floor_pressure;        ///< on the floor at z = 0
+  Array1 wall_shear;            ///< on the roof at z = 0, > 0 with the flow
+  Array1 floor_shear;           ///< on the floor at z = 0
   Array1 mean_pressure_uncertainty, wall_pressure_uncertainty;  ///< numerical, k = 1
   double drop = 0.0;              ///< Pa: mean pressure at x = 0 less that at x = length
   double drop_uncertainty = 0.0;  ///< Pa: numerical, k = 1

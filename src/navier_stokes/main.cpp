@@ -62,6 +62,10 @@ CommandLine read_words(const std::vector<std::string>& words) {
                      "Name a table with the columns x and zeta; see --help");
   }
   line.options.validate();
+  if (line.options.inlet == "both") {
+    throw InputError("--inlet", "both are two flows, and this program solves one",
+                     "Run manoscope simulate with an experiment, or choose developed or uniform");
+  }
   return line;
 }
 
@@ -74,6 +78,7 @@ SimulatedChannel channel_of(const ChannelShape& shape, const SimulationOptions& 
   channel.lead_in = options.lead_in;
   channel.lead_out = options.lead_out;
   channel.lead_in_slips = options.lead_in_slips;
+  channel.wall_shape = wall_shape_of(options);
   channel.inlet =
       options.inlet == "uniform" ? flow::InletProfile::uniform : flow::InletProfile::developed;
   return channel;

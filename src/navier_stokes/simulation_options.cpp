@@ -1,8 +1,14 @@
 #include "simulation_options.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 
@@ -48,10 +54,16 @@ void SimulationOptions::validate() const {
   check_positive("flow-rate", flow_rate.si(), "70 mL/min");
   check_positive("viscosity", viscosity.si(), "1 mPa s");
   check_positive("density", density.si(), "998 kg/m3");
-  if (inlet != "developed" && inlet != "uniform") {
+  validate_solution();
+}
+
+void SimulationOptions::validate_solution() const {
+  constexpr const char* kInlets[] = {"auto", "developed", "uniform", "both"};
+  if (std::find(std::begin(kInlets), std::end(kInlets), inlet) == std::end(kInlets)) {
     throw InputError("--inlet", fmt::format("\"{}\" is no profile", inlet),
-                     "Choose developed or uniform");
+                     "Choose developed, uniform, both or auto");
   }
+  static_cast<void>(wall_shape_of(*this));
   for (const auto& [name, length] :
        {std::pair{"lead-in", lead_in}, std::pair{"lead-out", lead_out}}) {
     if (length >= Length{} && std::isfinite(length.si())) continue;
@@ -61,6 +73,30 @@ void SimulationOptions::validate() const {
   constexpr int kMostStations = 100000;
   check_integer("stations", stations, 2, kMostStations);
   mesh.validate();
+}
+
+flow::WallShape wall_shape_of(const SimulationOptions& options) {
+  if (options.wall_shape == "parabola") return flow::WallShape::parabola();
+  constexpr std::size_t kMost = 12;
+  std::vector<double> coefficients;
+  const char* at = options.wall_shape.data();
+  const char* const end = at + options.wall_shape.size();
+  while (at < end && coefficients.size() <= kMost) {
+    double value = 0.0;
+    const auto [next, fault] = std::from_chars(at, end, value);
+    if (fault != std::errc() || !std::isfinite(value) || (next != end && *next != ',')) break;
+    coefficients.push_back(value);
+    at = next == end ? end : next + 1;
+  }
+  if (at != end || coefficients.empty() || options.wall_shape.back() == ',') {
+    throw InputError("--wall-shape", fmt::format("\"{}\" is no shape", options.wall_shape),
+                     "Give parabola, or up to 12 numbers with commas, as 1,-2,1");
+  }
+  return flow::WallShape(std::move(coefficients));
+}
+
+std::string wall_shape_text(const flow::WallShape& shape) {
+  return fmt::format("{}", fmt::join(shape.coefficients(), ","));
 }
 
 }  // namespace manoscope::navier_stokes

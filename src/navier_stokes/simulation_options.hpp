@@ -3,6 +3,7 @@
 #include <string>
 
 #include "manoscope/core/units.hpp"
+#include "manoscope/flow/roof.hpp"
 
 namespace manoscope::navier_stokes {
 
@@ -26,7 +27,8 @@ struct SimulationOptions {
   FlowRate flow_rate{};
   Viscosity viscosity = 1.0 * mPa_s;
   Density density = 998.0 * kg_per_m3;
-  std::string inlet = "developed";
+  std::string inlet = "auto";
+  std::string wall_shape = "parabola";
   Length lead_in{};
   Length lead_out{};
   bool lead_in_slips = false;
@@ -41,8 +43,13 @@ struct SimulationOptions {
     visit("flow-rate", flow_rate, "volumetric flow rate, e.g. 70mL/min");
     visit("viscosity", viscosity, "dynamic viscosity of the fluid");
     visit("density", density, "density of the fluid");
-    visit("dim", mesh.dim, "2: between plates, 3: the whole channel, its roof a parabola across");
-    visit("inlet", inlet, "profile where the flow enters: developed or uniform");
+    visit("dim", mesh.dim, "2: between plates, 3: the whole channel");
+    visit("inlet", inlet,
+          "profile where the flow enters: developed, uniform, or both, one after the other; auto: "
+          "what an experiment leaves open, else developed");
+    visit("wall-shape", wall_shape,
+          "roof across in three dimensions: parabola, or the coefficients of 1, s^2, s^4.., s = 2 "
+          "z/width, as 1,-2,1");
     visit("lead-in", lead_in, "length of a rigid straight duct before the channel");
     visit("lead-out", lead_out, "length of a rigid straight duct behind the channel");
     visit("lead-in-slips", lead_in_slips,
@@ -57,6 +64,14 @@ struct SimulationOptions {
   }
   /// @throws InputError naming the first option that is missing or out of range.
   void validate() const;
+  /// The same but for sizes, flow rate and fluid, which an experiment tells.
+  void validate_solution() const;
 };
+
+/// The shape that `wall_shape` tells.
+/// @throws InputError for text that is none.
+flow::WallShape wall_shape_of(const SimulationOptions& options);
+/// The text that wall_shape_of() reads back, every digit.
+std::string wall_shape_text(const flow::WallShape& shape);
 
 }  // namespace manoscope::navier_stokes

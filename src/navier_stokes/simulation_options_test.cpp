@@ -35,6 +35,10 @@ TEST(SimulationOptions, NameWhatIsOutOfRange) {
                                     {"lead-in", "-1mm"},
                                     {"tolerance", "0"},
                                     {"stations", "1"},
+                                    {"wall-shape", "round"},
+                                    {"wall-shape", "1,-1,"},
+                                    {"wall-shape", "1,nan"},
+                                    {"wall-shape", ""},
                                     {"width", "1.7"}}) {
     EXPECT_NE(fault(name, value).find(std::string("--") + name), std::string::npos) << name;
   }
@@ -48,6 +52,22 @@ TEST(SimulationOptions, SaysWhatIsMissing) {
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("--height"), std::string::npos) << error.what();
   }
+}
+
+TEST(SimulationOptions, ReadBackAWallShapeToTheLastDigit) {
+  SimulationOptions options;
+  EXPECT_EQ(wall_shape_of(options).coefficients(), flow::WallShape::parabola().coefficients());
+  const flow::WallShape shape({1.0, -1.9, 0.7, 0.2});
+  options.wall_shape = wall_shape_text(shape);
+  const flow::WallShape again = wall_shape_of(options);
+  for (const double s : {0.0, 0.3, 0.9}) EXPECT_NEAR(again.value(s), shape.value(s), 1e-14);
+}
+
+TEST(SimulationOptions, LeaveSizesToAnExperiment) {
+  SimulationOptions options;
+  options.validate_solution();
+  options.inlet = "slanted";
+  EXPECT_THROW(options.validate_solution(), InputError);
 }
 
 TEST(FlowMesh, EndsOfTheChannelAreEndsOfCells) {

@@ -85,15 +85,7 @@ void store_provenance(const Experiment& experiment, const ReducedExperiment& red
   m.history = "manoscope measure";
   m.experiment = experiment.text;
   m.settings = settings_text(options) + place_text(reduced.frame);
-  for (std::size_t i = 0; i < reduced.hash.size(); ++i) {
-    const std::size_t n_static = experiment.hydrostatic.size();
-    const std::string& name =
-        i < n_static ? experiment.hydrostatic[i].name : experiment.flow[i - n_static].name;
-    m.inputs += fmt::format("{}  {}\n", name, reduced.hash[i]);
-  }
-  if (const auto& reference = experiment.instrument.reference) {
-    m.inputs += fmt::format("{}  {}\n", reference->filename().string(), reduced.reference_hash);
-  }
+  m.inputs = inputs_text(experiment, reduced);
   m.channel_length = experiment.channel.length.si();
   m.channel_width = experiment.channel.width.si();
   m.channel_height = experiment.channel.height.si();

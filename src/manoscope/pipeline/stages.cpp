@@ -185,6 +185,20 @@ ReducedExperiment reduce_maps(const Experiment& experiment, const ChannelFrame& 
   return result;
 }
 
+std::string inputs_text(const Experiment& experiment, const ReducedExperiment& reduced) {
+  std::string text;
+  for (std::size_t i = 0; i < reduced.hash.size(); ++i) {
+    const std::size_t n_static = experiment.hydrostatic.size();
+    const std::string& name =
+        i < n_static ? experiment.hydrostatic[i].name : experiment.flow[i - n_static].name;
+    text += fmt::format("{}  {}\n", name, reduced.hash[i]);
+  }
+  if (const auto& reference = experiment.instrument.reference) {
+    text += fmt::format("{}  {}\n", reference->filename().string(), reduced.reference_hash);
+  }
+  return text;
+}
+
 std::vector<calibration::Level> make_levels(const Experiment& experiment,
                                             const std::vector<maps::ReducedMap>& reduced) {
   std::vector<calibration::Level> levels;

@@ -42,6 +42,9 @@ ReducedExperiment reduce_maps(const experiment::Experiment& experiment, const Ch
                               const maps::ReduceOptions& options, int n_threads,
                               const Monitor& monitor);
 
+/// Name and SHA-256 of every map, one a line: what a result was made of.
+std::string inputs_text(const experiment::Experiment& experiment, const ReducedExperiment& reduced);
+
 /// The calibration levels of an experiment, one a map.
 std::vector<calibration::Level> make_levels(const experiment::Experiment& experiment,
                                             const std::vector<maps::ReducedMap>& reduced);

@@ -4,6 +4,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/uncertainty.hpp"
 #include "manoscope/pipeline/assemble.hpp"
+#include "manoscope/pipeline/at_stations.hpp"
 #include "manoscope/validation/drop_fit.hpp"
 
 namespace manoscope::pipeline {
@@ -11,35 +12,6 @@ namespace {
 
 using results::FlowChecks;
 using results::kNoNumber;
-
-/// Values on ascending stations, straight between them, at others; NaN outside and next to NaN.
-Array1 between(const Array1& from, const Array1& values, const Array1& x) {
-  Array1 result = Array1::Constant(x.size(), kNoNumber);
-  if (from.size() < 2) return result;
-  const auto* const begin = from.data();
-  for (Index i = 0; i < x.size(); ++i) {
-    if (x[i] < from[0] || x[i] > from[from.size() - 1]) continue;
-    const Index right = std::clamp<Index>(
-        std::upper_bound(begin, begin + from.size(), x[i]) - begin, 1, from.size() - 1);
-    const double share = (x[i] - from[right - 1]) / (from[right] - from[right - 1]);
-    result[i] = (1.0 - share) * values[right - 1] + share * values[right];
-  }
-  return result;
-}
-
-/// The same for the stations of a reading that have an answer.
-Array1 answers_between(const inversion::PressureReading& reading, const Array1& values,
-                       const Array1& x) {
-  std::vector<double> at, value;
-  for (Index i = 0; i < reading.x.size(); ++i) {
-    if (!reading.answered(i)) continue;
-    at.push_back(reading.x[i]);
-    value.push_back(values[i]);
-  }
-  const auto n = static_cast<Index>(at.size());
-  return between(Eigen::Map<const Array1>(at.data(), n), Eigen::Map<const Array1>(value.data(), n),
-                 x);
-}
 
 /// Row of a name in a list, added at the end if it is new.
 Index row_of(std::vector<std::string>& names, const std::string& name) {

@@ -1,0 +1,142 @@
+#include "solver_program.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkstemp
+#include <unistd.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "manoscope/core/atomic_file.hpp"
+#include "manoscope/core/child_process.hpp"
+#include "manoscope/core/error.hpp"
+#include "manoscope/core/options.hpp"
+#include "simulate_summary.hpp"
+
+namespace manoscope::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char* kProgram = "manoscope-navier-stokes";
+
+/// The solver beside this program, or on PATH.
+fs::path find_solver() {
+  std::error_code error;
+  fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
+  if (fs::is_regular_file(beside, error) && ::access(beside.c_str(), X_OK) == 0) return beside;
+  if (const auto found = find_program(kProgram)) return *found;
+  throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
+                   "Run make simulation, which installs deal.II (tools/install_packages.sh "
+                   "navier-stokes) and builds it beside manoscope");
+}
+
+/// A file for the solver to read, gone with the object.
+class ShapeFile {
+ public:
+  ShapeFile(const Array1& x, const Array1& zeta) {
+    std::string name = (fs::temp_directory_path() / "manoscope-shape-XXXXXX").string();
+    const int file = ::mkstemp(name.data());
+    if (file < 0) {
+      throw InputError(fs::temp_directory_path().string(), "no file can be made there",
+                       "Set TMPDIR to a folder with free space");
+    }
+    ::close(file);
+    path_ = name;
+    std::string text = "x [m],zeta [m]\n";
+    for (Index i = 0; i < x.size(); ++i) text += fmt::format("{:.17g},{:.17g}\n", x[i], zeta[i]);
+    write_file_atomically(path_, text);
+  }
+  ~ShapeFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  ShapeFile(const ShapeFile&) = delete;
+  ShapeFile& operator=(const ShapeFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+Array1 list(const json& object, const char* name) {
+  const auto values = object.at(name).get<std::vector<double>>();
+  return Eigen::Map<const Array1>(values.data(), static_cast<Index>(values.size()));
+}
+
+pipeline::SolvedFlow parsed(const std::string& answer) {
+  const json object = json::parse(answer);
+  pipeline::SolvedFlow solved;
+  solved.x = list(object, "x_m");
+  solved.gap = list(object, "gap_m");
+  solved.mean_pressure = list(object, "mean_pressure_Pa");
+  solved.coarse_mean_pressure = list(object, "coarse_mean_pressure_Pa");
+  solved.mean_pressure_uncertainty = list(object, "mean_pressure_numerical_uncertainty_Pa");
+  solved.wall_pressure = list(object, "wall_pressure_Pa");
+  solved.floor_pressure = list(object, "floor_pressure_Pa");
+  solved.wall_shear = list(object, "wall_shear_Pa");
+  solved.floor_shear = list(object, "floor_shear_Pa");
+  solved.drop = object.at("drop_Pa").get<double>();
+  solved.drop_uncertainty = object.at("drop_numerical_uncertainty_Pa").get<double>();
+  solved.coarse_drop = object.at("coarse_drop_Pa").get<double>();
+  solved.converged = object.at("converged").get<bool>();
+  solved.n_unknowns = object.at("unknowns").get<double>();
+  solved.seconds = object.at("seconds").get<double>();
+  solved.peak_memory = 1e6 * object.at("peak_MB").get<double>();
+  return solved;
+}
+
+}  // namespace
+
+void require_solver() { static_cast<void>(find_solver()); }
+
+std::string ask_solver(const fs::path& shape, const navier_stokes::SimulationOptions& options,
+                       const fs::path& vtu, const Monitor& monitor) {
+  constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
+  constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
+  std::vector<std::string> words{find_solver().string(), shape.string()};
+  for (const OptionInfo& option : list_options(options)) {
+    words.push_back("--" + option.name);
+    words.push_back(option.value);
+  }
+  if (!vtu.empty()) words.insert(words.end(), {"--vtu", vtu.string()});
+  ChildProcess::Options started;
+  started.wall_seconds = kLongest;
+  // One thread: the sparse solver's BLAS would otherwise take all there are, for little.
+  started.environment = {"OMP_NUM_THREADS=1"};
+  started.stop_requested = monitor.stop_requested;
+  auto solver = ChildProcess::start(words, started);
+  if (!solver) throw InputError(words.front(), "cannot be started", "Check its permissions");
+  std::string answer = solver->read_all(kLargest);
+  const ChildEnd end = solver->wait();
+  monitor.checkpoint();
+  if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
+  if (end.succeeded()) return answer;
+  throw InternalError(
+      end.signal == SIGKILL
+          ? fmt::format("{} was killed: the machine may be short of memory; take "
+                        "fewer cells",
+                        kProgram)
+          : fmt::format("{} ended with exit code {}, signal {}; run it by itself to "
+                        "see its message",
+                        kProgram, end.exit_code, end.signal));
+}
+
+pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
+                                navier_stokes::SimulationOptions options, const fs::path& vtu,
+                                const Monitor& monitor) {
+  options.height = flow.channel.height;
+  options.width = flow.channel.width;
+  options.flow_rate = flow.flow_rate;
+  options.viscosity = flow.fluid.viscosity;
+  options.density = flow.fluid.density;
+  options.inlet = flow.inlet == flow::InletProfile::uniform ? "uniform" : "developed";
+  options.wall_shape = navier_stokes::wall_shape_text(flow.wall_shape);
+  options.mesh.dim = flow.dim;
+  const ShapeFile shape(flow.x, flow.zeta);
+  return parsed(ask_solver(shape.path(), options, vtu, monitor));
+}
+
+}  // namespace manoscope::cli
