@@ -8,6 +8,7 @@
 #include "manoscope/report/figures.hpp"
 #include "manoscope/report/model_panel.hpp"
 #include "manoscope/report/plot_script.hpp"
+#include "manoscope/report/simulated_lines.hpp"
 
 namespace manoscope::report {
 namespace {
@@ -116,13 +117,16 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
   const ReportUnits units = report_units(m);
   const DisplayUnit unit = pressure_unit(largest_magnitude(row(m.pressure, run)));
   const ModelsOfRun models = models_of_run(m, run);
+  const std::vector<SimulatedLine> simulated = simulated_lines(m, run);
   PlotScript script;
   script.set(common_settings());
   script.set("set key maxrows 3 width -9 font ',13'");
   if (models.found()) {
-    script.set("set key at screen 0.5,0.995 center top vertical maxrows 4 width -4");
+    script.set(fmt::format("set key at screen 0.5,0.995 center top vertical maxrows {} width -4",
+                           simulated.empty() ? 4 : 5));
     script.set("set multiplot\nset lmargin at screen 0.12\nset rmargin at screen 0.87");
-    script.set("set tmargin at screen 0.875\nset bmargin at screen 0.47\nset format x ''");
+    script.set(fmt::format("set tmargin at screen {}\nset bmargin at screen 0.47\nset format x ''",
+                           simulated.empty() ? "0.875" : "0.85"));
   } else {
     script.set(fmt::format("set xlabel '{{/:Italic x}} ({})'", units.x.name));
   }
@@ -155,6 +159,7 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
                             models.reference_style.colour, title(models.reference_style.words)));
   }
   draw_linear_fit(script, m, run, units, unit);
+  draw_crosses(script, m, simulated, {}, units, unit.si, true);
   const Crossings crossings = crossings_of(m, run);
   if (crossings.x.size() > 0) {
     script.draw(script.add_data({crossings.x / units.x.si, crossings.pressure / unit.si,
@@ -180,11 +185,11 @@ std::optional<Figure> pressure_of_run(const Measurement& m, Index run, Figure fi
       "hydraulic resistance of the measured gap gives, tied to the reading at the end of the "
       "test section; dotted: straight line through the reading. Red: deflection. The test "
       "section is shaded; a gap in the line is a station where the wall gives no answer. Near "
-      "the ends the interval may leave the frame.{} As fig. 3{} of Ozsun et al. (2013).",
-      flow_rate_label(m, run, units), 100.0 * m.coverage,
+      "the ends the interval may leave the frame.{}{} As fig. 3{} of Ozsun et al. (2013).",
+      flow_rate_label(m, run, units), 100.0 * m.coverage, crosses_words(simulated),
       models.found() ? difference_words(models) : std::string(), figure.caption);
   figure.width = 640;
-  figure.height = models.found() ? 740 : 500;
+  figure.height = (models.found() ? 740 : 500) + (simulated.empty() ? 0 : 20);
   figure.script = script.text();
   return figure;
 }

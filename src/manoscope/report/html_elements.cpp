@@ -27,6 +27,32 @@ std::string chance_text(double chance, double least) {
   return chance < least ? "<span class=\"bad\">" + text + "</span>" : text;
 }
 
+const char* verdict_style(FlowVerdict verdict) {
+  switch (verdict) {
+    case FlowVerdict::agrees:
+      return "good";
+    case FlowVerdict::only_drop:
+      return "half";
+    case FlowVerdict::differs:
+      return "bad";
+    case FlowVerdict::none:
+      break;
+  }
+  return "none";
+}
+
+std::string agreement_cell(FlowVerdict verdict, bool doubtful, double share, double en_number,
+                           double p_value) {
+  std::string content =
+      fmt::format("<span class=\"{}\">{} {}</span><br>{}", verdict_style(verdict),
+                  doubtful ? "○" : "●", verdict_word(verdict), signed_percent_text(share));
+  if (verdict != FlowVerdict::none) {
+    content += fmt::format("<br><i>E</i><sub>n</sub> {:.2f}, <i>p</i> {}", en_number,
+                           chance_text(p_value, 0.0));
+  }
+  return cell(content);
+}
+
 std::string table(const std::string& caption, const std::string& head, const std::string& body,
                   bool tall) {
   return fmt::format(

@@ -9,6 +9,7 @@
 #include "manoscope/report/flow_verdict.hpp"
 #include "manoscope/report/html_elements.hpp"
 #include "manoscope/report/html_flow_drops.hpp"
+#include "manoscope/report/html_simulation.hpp"
 #include "manoscope/report/html_text.hpp"
 #include "manoscope/report/number_text.hpp"
 
@@ -16,20 +17,6 @@ namespace manoscope::report {
 namespace {
 
 using results::Measurement;
-
-const char* style_of(FlowVerdict verdict) {
-  switch (verdict) {
-    case FlowVerdict::agrees:
-      return "good";
-    case FlowVerdict::only_drop:
-      return "half";
-    case FlowVerdict::differs:
-      return "bad";
-    case FlowVerdict::none:
-      break;
-  }
-  return "none";
-}
 
 /// Head of a row of the flow tables: run and flow rate.
 std::string run_cells(const Measurement& m, std::size_t i, const ReportUnits& units) {
@@ -45,17 +32,10 @@ std::string run_heads(const ReportUnits& units) {
 std::string model_cell(const Measurement& m, Index model, Index run) {
   const double drop = m.model_drop(model, run), extracted = m.extracted_drop(run);
   if (!std::isfinite(drop)) return cell("–");
-  const FlowVerdict verdict = flow_verdict(m, model, run);
-  const bool hollow = std::isgreater(m.model_stated_error(model, run), kMostStatedError);
-  std::string content = fmt::format(
-      "<span class=\"{}\">{} {}</span><br>{}", style_of(verdict), hollow ? "○" : "●",
-      verdict_word(verdict), signed_percent_text(share_of(drop - extracted, std::abs(extracted))));
-  if (verdict != FlowVerdict::none) {
-    content +=
-        fmt::format("<br><i>E</i><sub>n</sub> {:.2f}, <i>p</i> {}", m.model_en_number(model, run),
-                    chance_text(m.model_p_value(model, run), 0.0));
-  }
-  return cell(content);
+  return agreement_cell(flow_verdict(m, model, run),
+                        std::isgreater(m.model_stated_error(model, run), kMostStatedError),
+                        share_of(drop - extracted, std::abs(extracted)),
+                        m.model_en_number(model, run), m.model_p_value(model, run));
 }
 
 std::string models_table(const Measurement& m) {
@@ -66,13 +46,14 @@ std::string models_table(const Measurement& m) {
     const std::string text = escape_html(name == "paper" ? "paper, eq. (4)" : name);
     head += column_head(name == m.verdict_model ? text + " (verdict)" : text);
   }
+  head += simulation_heads(m);
   std::string body;
   for (std::size_t i = 0; i < m.run.size(); ++i) {
     body += "<tr>" + run_cells(m, i, units);
     for (Index model = 0; model < m.model_drop.rows(); ++model) {
       body += model_cell(m, model, static_cast<Index>(i));
     }
-    body += "</tr>\n";
+    body += simulation_cells(m, static_cast<Index>(i)) + "</tr>\n";
   }
   return table(
       fmt::format(
@@ -179,8 +160,8 @@ std::string verdict_sentence(const Measurement& m) {
 }
 
 std::string flow_part(const Measurement& m) {
-  const std::string tables = models_table(m) + verdicts_table(m) + corrections_table(m) +
-                             inferred_table(m) + channel_drops_table(m);
+  const std::string tables = models_table(m) + simulations_table(m) + verdicts_table(m) +
+                             corrections_table(m) + inferred_table(m) + channel_drops_table(m);
   if (tables.empty()) return {};
   std::string part = "<h2 id=\"flow\">Flow models</h2>\n";
   if (!m.flow_setup.empty()) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manoscope/report/simulated_lines.hpp"
+
 namespace manoscope::report {
 namespace {
 
@@ -72,6 +74,9 @@ void draw_differences(PlotScript& script, const Measurement& m, Index run,
   for (const ModelsOfRun::Line& line : models.others) {
     all.emplace_back(line.pressure - models.reference);
   }
+  const std::vector<SimulatedLine> simulated = simulated_lines(m, run);
+  const std::size_t n_models = models.others.size();
+  if (!simulated.empty()) all.emplace_back(simulated.back().pressure - models.reference);
   double largest = 0.0;
   for (const Array1& line : all) largest = std::max(largest, largest_magnitude(line));
   const DisplayUnit unit = pressure_unit(largest);
@@ -89,12 +94,13 @@ void draw_differences(PlotScript& script, const Measurement& m, Index run,
   script.draw(script.add_data({whole, Array1::Zero(2)}),
               fmt::format("using 1:2 with lines lw 1.6 lc rgb '{}' {}",
                           models.reference_style.colour, title(models.reference_style.words)));
-  for (std::size_t i = 0; i < models.others.size(); ++i) {
+  for (std::size_t i = 0; i < n_models; ++i) {
     const ModelStyle& style = models.others[i].style;
     script.draw(script.add_data({x, thinned(all[i + 3]) / unit.si}),
                 fmt::format("using 1:2 with lines dt 2 lw 2 lc rgb '{}' {}", style.colour,
                             title(style.words)));
   }
+  draw_crosses(script, m, simulated, models.reference, units, unit.si, false);
   script.plot();
 }
 
