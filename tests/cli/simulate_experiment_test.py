@@ -202,11 +202,6 @@ class SimulateExperiment(DemoFolder):
         run("simulate", self.experiment, "--run", "Q5", "-o", self.folder / "none", *QUICK,
             check_code=2)
         self.assertFalse((self.folder / "none").exists())
-        # A mesh on which Newton's method finds no flow.
-        done = run("simulate", self.experiment, "--run", "Q70", "-o", result, "--cells-along", "41",
-                   "--cells-up", "3", check_code=2)
-        self.assertIn("no steady flow", done.stderr)
-        self.assertEqual(done.stdout, "")
         self.assertEqual(hashes(result), before)
         # A gap that the wall closes: the wall of the demo bends inwards by 11 um.
         path = other / "experiment.toml"
@@ -215,6 +210,26 @@ class SimulateExperiment(DemoFolder):
         self.assertNotEqual(path.read_text(encoding="utf-8"), text)
         done = run("simulate", other, "--run", "Q5", check_code=2)
         self.assertIn("gap", done.stderr)
+
+    def test_a_solver_that_finds_no_flow_is_quoted_and_leaves_nothing(self):
+        # The program takes the solver beside it: here one that gives up.
+        folder, result = self.folder / "beside", self.folder / "kept"
+        folder.mkdir()
+        shutil.copytree(self.out, result)
+        before = hashes(result)
+        program, solver = folder / "manoscope", folder / SOLVER.name
+        shutil.copy(PROGRAM, program)
+        program.chmod(0o755)
+        solver.write_text("#!/bin/sh\necho '{\"error\":{\"where\":\"solver\",\"found\":"
+                          "\"no steady flow\",\"mend\":\"Take more cells\"}}'\nexit 2\n",
+                          encoding="utf-8")
+        solver.chmod(0o755)
+        done = subprocess.run([program, "simulate", self.experiment, "--run", "all", "-o", result],
+                              text=True, capture_output=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("no steady flow. Take more cells", done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(hashes(result), before)
 
     @NEEDS_SOLVER
     def test_ctrl_c_ends_the_solver(self):

@@ -48,8 +48,8 @@ struct SimulationComparison {
 /// with side walls along the same wall (flow_sensitivity()), scaled by the ratio of both drops: one
 /// Navier-Stokes solution a parameter would cost minutes for a few percent of an error bar. Mesh
 /// and inlet profile are the solver's own. Errors that the reading shares (noise, plane and
-/// position of the map under flow) count once in the difference. The rule of the verdict is
-/// judge()'s.
+/// position of the map under flow) count once in the difference, and the inlet profile only where
+/// it moves the drop towards the reading. The rule of the verdict is judge()'s.
 ///
 /// Between plates there are no side walls, and the roof is flat across. What both add is given
 /// beside the solution as it is:

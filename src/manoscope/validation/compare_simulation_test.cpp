@@ -113,6 +113,24 @@ TEST(CompareSimulation, NamesEveryPartOfTheUncertainty) {
   EXPECT_EQ(found.variants[0].pressure[kSolved - 1], 600.0);
 }
 
+TEST(CompareSimulation, AnInletExcusesADifferenceOneWayOnly) {
+  const Held held{CoupledTrial{}};
+  const SmoothShape shape(held.state, kChannel);
+  const auto bar = [&](double pressure, double inlet) {
+    SolvedPressure given = solved(shape, kChannel);
+    given.pressure *= pressure;
+    given.inlet = inlet * given.pressure;
+    return compare_simulation(observed(kChannel, kOil), kOilFlow, shape, held.state, given, kOutlet,
+                              held.reading, kSection)
+        .variants[0]
+        .agreement->uncertainty;
+  };
+  // A drop 5 % too small, and a profile that may add another 5 %, or take them off.
+  EXPECT_GT(bar(0.95, 0.05), 2.0 * bar(0.95, 0.0));
+  EXPECT_DOUBLE_EQ(bar(0.95, -0.05), bar(0.95, 0.0));
+  EXPECT_DOUBLE_EQ(bar(1.05, 0.05), bar(1.05, 0.0));
+}
+
 TEST(CompareSimulation, GivesWhatSideWallsAddBesideAPlaneSolution) {
   const Held held{CoupledTrial{}};
   const SmoothShape shape(held.state, kChannel);
