@@ -130,6 +130,7 @@ std::string summary_json(const results::Measurement& m, const std::filesystem::p
     runs.back().update(flow_checks_json(m, r));
   }
   return json{{"output", folder.string()},
+              {"uncertainties", "standard, k = 1"},
               {"runs", runs},
               {"checks", checks_json(m)},
               {"improve_first", advice_json(m)},

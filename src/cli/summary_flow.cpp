@@ -95,14 +95,17 @@ json flow_checks_json(const Measurement& m, Index r) {
           {"inferred_flow_rate_m3_s", number(m.inferred_flow_rate[r])},
           {"inferred_flow_rate_uncertainty_m3_s", number(m.inferred_flow_rate_uncertainty[r])},
           {"inferred_viscosity_Pa_s", number(m.inferred_viscosity[r])},
+          {"inferred_viscosity_uncertainty_Pa_s", number(m.inferred_viscosity_uncertainty[r])},
+          {"transducer_drop_uncertainty_Pa", number(m.transducer_drop_uncertainty[r])},
+          {"parasitic_drop_uncertainty_Pa", number(m.parasitic_drop_uncertainty[r])},
           {"compliant_drop_Pa", number(m.compliant_drop[r])},
+          {"compliant_drop_uncertainty_Pa", number(m.compliant_drop_uncertainty[r])},
           {"predicted_drop_Pa", number(m.predicted_drop[r])},
           {"predicted_drop_uncertainty_Pa", number(m.predicted_drop_uncertainty[r])},
           {"predicted_en_number", number(m.predicted_en_number[r])},
           {"friction_drag_N", number(m.friction_drag[r])},
           {"relative_friction_drag", number(m.relative_friction_drag[r])},
-          {"reduced_reynolds", number(m.reduced_reynolds[r])},
-          {"parasitic_drop_uncertainty_Pa", number(m.parasitic_drop_uncertainty[r])}};
+          {"reduced_reynolds", number(m.reduced_reynolds[r])}};
 }
 
 }  // namespace manoscope::cli

@@ -83,10 +83,29 @@ class Measure(DemoFolder):
             self.assertAlmostEqual(effects["mean-gap rectangle"], models["paper"]["drop_Pa"],
                                    delta=1e-6 * march["drop_Pa"])
             for key in ("inferred_flow_rate_m3_s", "inferred_flow_rate_uncertainty_m3_s",
-                        "compliant_drop_Pa", "predicted_drop_Pa", "predicted_drop_uncertainty_Pa",
+                        "compliant_drop_Pa", "compliant_drop_uncertainty_Pa", "predicted_drop_Pa",
+                        "predicted_drop_uncertainty_Pa",
                         "predicted_en_number", "friction_drag_N", "relative_friction_drag",
                         "reduced_reynolds", "parasitic_drop_uncertainty_Pa"):
                 self.assertEqual(run_[key], float(row[key]) if row[key] else None, key)
+            for key in ("inferred_viscosity_uncertainty_Pa_s", "transducer_drop_uncertainty_Pa",
+                        "compliant_drop_uncertainty_Pa"):
+                self.assertGreater(run_[key], 0.0, key)
+
+    def test_a_drop_without_a_known_noise_has_no_uncertainty(self):
+        folder = self.folder / "no_noise"
+        shutil.copytree(self.out / "experiment", folder)
+        toml = folder / "experiment.toml"
+        toml.write_text(re.sub(r"pressure_drop_uncertainty.*\n", "", toml.read_text()))
+        out = self.folder / "no_noise_out"
+        told = json.loads(measure(folder, "-o", out, "--json", check_code=0).stdout)
+        self.assertEqual(told["uncertainties"], "standard, k = 1")
+        for run_, row in zip(told["runs"], self.drops(out)):
+            self.assertGreater(run_["compliant_drop_Pa"], 0.0)
+            for key in ("compliant_drop_uncertainty_Pa", "predicted_en_number"):
+                self.assertEqual(row[key], "")
+                self.assertIsNone(run_[key])
+            self.assertIsNone(run_["transducer_drop_uncertainty_Pa"])
 
     def test_the_table_of_the_flow_model_has_the_verdict_of_every_run(self):
         # The demo prints the same table of its own measurement.

@@ -36,7 +36,8 @@ double Uncertainty::covariance(const Array1& a, const Array1& b) const {
 }
 
 double Estimate::standard_uncertainty() const {
-  return std::sqrt(std::max(0.0, manoscope::covariance(*this, *this)));
+  const double variance = manoscope::covariance(*this, *this);
+  return std::isnan(variance) ? variance : std::sqrt(std::max(0.0, variance));
 }
 
 double covariance(const Estimate& a, const Estimate& b) {

@@ -44,11 +44,12 @@ struct Estimate {
   struct Term {
     std::string variable;
     std::string source;
-    double effect;  ///< signed, per standard deviation of the variable
+    double effect;  ///< signed, per standard deviation of the variable; NaN: not known
   };
   double value = 0.0;
   std::vector<Term> terms;
 
+  /// NaN if an effect is not known.
   double standard_uncertainty() const;
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "manoscope/core/random.hpp"
 
 namespace manoscope {
@@ -42,6 +44,11 @@ TEST(Uncertainty, CovarianceIsWhatDrawsOfItsVariablesShow) {
   // Five standard errors of a sample covariance with entries up to 7.25.
   EXPECT_LT((sum / kDraws - uncertainty.covariance()).cwiseAbs().maxCoeff(),
             5.0 * std::sqrt(2.0 / kDraws) * 7.25);
+}
+
+TEST(Estimate, IsAsUncertainAsItsLeastKnownVariable) {
+  const Estimate estimate{1.0, {{"noise", "", std::nan("")}, {"gain", "", 3.0}}};
+  EXPECT_TRUE(std::isnan(estimate.standard_uncertainty()));
 }
 
 TEST(Estimate, SharesOnlyVariablesOfTheSameName) {

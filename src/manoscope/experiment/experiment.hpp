@@ -10,6 +10,7 @@
 #include "manoscope/core/units.hpp"
 #include "manoscope/flow/marching.hpp"
 #include "manoscope/flow/passage_losses.hpp"
+#include "manoscope/flow/simulated_drop.hpp"
 
 namespace manoscope::experiment {
 
@@ -104,7 +105,8 @@ struct FlowMap {
 /// A rigid passage between the channel and a gauge.
 struct Passage {
   Length length{}, width{}, height{};
-  flow::PassageFittings fittings;  ///< steps at its ends and bends in it
+  std::optional<Length> height_uncertainty;  ///< standard, one error for both passages
+  flow::PassageFittings fittings;            ///< steps at its ends and bends in it
 };
 
 struct RigidSection {

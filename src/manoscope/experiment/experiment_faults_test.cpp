@@ -152,8 +152,8 @@ const Case kTomlCases[] = {
     {"name_as_number", kToml, "\"S1\"", "1", "experiment.toml:2: name",
      "the bare number 1 is no text", "in quotes"},
     {"number_for_a_table", kToml,
-     "outlet = {length = \"6 mm\", width = \"1.7 mm\", height = \"175 um\", from = \"1 mm2\", "
-     "into_reservoir = true, mitre_bends = 1}",
+     "outlet = {length = \"6 mm\", width = \"1.7 mm\", height = \"175 um\", height_uncertainty = "
+     "\"0.6 um\", from = \"1 mm2\", into_reservoir = true, mitre_bends = 1}",
      "outlet = 5", "experiment.toml:44: rigid.outlet",
      "the bare number 5 stands where a section belongs", "outlet = {...}"},
     {"missing_list", kToml, "\"flow.csv\"", "\"flows.csv\"", "experiment.toml:40: flow.list",
@@ -323,6 +323,11 @@ const Case kRigidCases[] = {
     {"reservoir_as_text", kToml, "into_reservoir = true", "into_reservoir = \"yes\"",
      "experiment.toml:44: rigid.outlet.into_reservoir", "neither true nor false",
      "into_reservoir = true"},
+    {"passage_height_less_sure_than_high", kToml, "\"0.6 um\"", "\"0.6 mm\"",
+     "experiment.toml:44: rigid.outlet.height_uncertainty", "600 um, is not below the height",
+     "check its unit"},
+    {"negative_uncertainty_of_a_passage", kToml, "\"0.6 um\"", "\"-0.6 um\"",
+     "experiment.toml:44: rigid.outlet.height_uncertainty", "is negative", "zero or positive"},
     {"negative_bends", kToml, "round_bends = 2", "round_bends = -2",
      "experiment.toml:43: rigid.inlet.round_bends", "-2 is negative", "a whole number from 0"},
     {"fractional_bends", kToml, "mitre_bends = 1", "mitre_bends = 1.5",

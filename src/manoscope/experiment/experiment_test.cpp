@@ -56,6 +56,8 @@ TEST(ReadExperiment, UnderstandsEveryKeyOfTheManual) {
   expect_si(e.inlet.developing_length.si(), 2e-3);
   expect_si(e.rigid.inlet->length.si(), 5e-3);
   expect_si(e.rigid.outlet->length.si(), 6e-3);
+  EXPECT_EQ(e.rigid.inlet->height_uncertainty, std::nullopt);
+  expect_si(e.rigid.outlet->height_uncertainty->si(), 0.6e-6);
   const flow::PassageFittings& in = e.rigid.inlet->fittings;
   EXPECT_EQ(in.from, std::nullopt);
   EXPECT_TRUE(in.from_reservoir);

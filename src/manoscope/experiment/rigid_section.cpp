@@ -62,6 +62,19 @@ int read_bends(io::TableReader& passage, const std::string& key, io::Faults& fau
   return usable ? n_bends : 0;
 }
 
+/// @param height  0 if it is at fault itself.
+std::optional<Length> read_height_uncertainty(io::TableReader& passage, Length height,
+                                              io::Faults& faults) {
+  const auto uncertainty =
+      passage.quantity<Length>("height_uncertainty", io::bounds::kLengthUncertainty);
+  if (!uncertainty || height == Length{} || *uncertainty < height) return uncertainty;
+  faults.add(passage.place("height_uncertainty"),
+             fmt::format("the uncertainty, {:g} um, is not below the height itself, {:g} um",
+                         uncertainty->in(um), height.in(um)),
+             "Give the standard uncertainty of the height: check its unit");
+  return std::nullopt;
+}
+
 std::optional<Passage> read_passage(io::TableReader& rigid, const std::string& key,
                                     io::Faults& faults) {
   auto table = rigid.table(key);
@@ -73,6 +86,7 @@ std::optional<Passage> read_passage(io::TableReader& rigid, const std::string& k
       table->quantity<Length>("width", io::bounds::kWidth, io::Need::required).value_or(Length{});
   passage.height =
       table->quantity<Length>("height", io::bounds::kHeight, io::Need::required).value_or(Length{});
+  passage.height_uncertainty = read_height_uncertainty(*table, passage.height, faults);
   const flow::Area own = passage.width * passage.height;
   const PassageEnd from = read_end(*table, "from", own, faults);
   const PassageEnd into = read_end(*table, "into", own, faults);

@@ -25,7 +25,8 @@ TEST(RigidSection, TakesAStepToASectionOfThePassagesOwnSizeInAnyUnit) {
   // In binary some of these areas are below 1.7 mm times 250 um, by round-off.
   for (const char* area : {"0.425 mm2", "425000 um2", "4.25e-3 cm2", "4.25e-7 m2"}) {
     const std::string outlet = std::string("height = \"250 um\", from = \"") + area + "\"";
-    const auto rigid = rigid_with("height = \"175 um\", from = \"1 mm2\"", outlet.c_str());
+    const auto rigid = rigid_with(
+        "height = \"175 um\", height_uncertainty = \"0.6 um\", from = \"1 mm2\"", outlet.c_str());
     const Passage& passage = *rigid.outlet;
     // The formulas refuse a section below the passage's, so that no round-off may be left.
     EXPECT_GE(*passage.fittings.from, passage.width * passage.height) << area;

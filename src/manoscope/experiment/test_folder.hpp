@@ -79,7 +79,7 @@ list = "flow.csv"
 
 [rigid]
 inlet  = {length = "5 mm", width = "1.7 mm", height = "175 um", from_reservoir = true, into = "0.3 mm2", round_bends = 2}
-outlet = {length = "6 mm", width = "1.7 mm", height = "175 um", from = "1 mm2", into_reservoir = true, mitre_bends = 1}
+outlet = {length = "6 mm", width = "1.7 mm", height = "175 um", height_uncertainty = "0.6 um", from = "1 mm2", into_reservoir = true, mitre_bends = 1}
 simulated = [
   {flow_rate = "20 mL/min", drop = "310 Pa", uncertainty = "10 Pa"},
   {flow_rate = "70 mL/min", drop = "1.4 kPa"}]

@@ -7,6 +7,7 @@ namespace manoscope::flow {
 /// A rigid passage of constant rectangular section between the channel and a pressure gauge.
 struct RigidPassage {
   Length length{}, width{}, height{};
+  Length height_uncertainty{};  ///< standard; 0 = exact
   friend bool operator==(const RigidPassage&, const RigidPassage&) = default;
 };
 

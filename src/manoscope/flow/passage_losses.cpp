@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/flow/aperture_loss.hpp"
 #include "manoscope/flow/cross_section.hpp"
-#include "manoscope/flow/duct_resistance.hpp"
 #include "manoscope/flow/entry_flow.hpp"
 
 namespace manoscope::flow {
@@ -16,8 +17,10 @@ namespace {
 
 constexpr const char* kWhere = "rigid passage";
 constexpr double kEdgeLoss = 0.1;  // of rho U^2/2, behind the edge of a contraction
-constexpr double kDevelopmentShare = 0.1, kExpansionShare = 0.3, kStepShare = 0.5;
+constexpr double kDevelopmentShare = 0.1, kExpansionShare = 0.3;
+constexpr double kHoleShape = 0.055, kHoleInPlace = 0.3;
 
+/// Standard uncertainty of what lies anywhere within the half width, as likely here as there.
 double rectangular(double half_width) { return std::abs(half_width) / std::numbers::sqrt3; }
 
 /// Small over large area of a step, or nothing without one.
@@ -41,12 +44,7 @@ double momentum_factor(const RigidPassage& passage) {
       .momentum_factor;
 }
 
-}  // namespace
-
-std::vector<PressureTerm> passage_terms(const Fluid& fluid, FlowRate flow_rate,
-                                        const RigidPassage& passage,
-                                        const PassageFittings& fittings) {
-  fluid.validate(kWhere);
+void check(FlowRate flow_rate, const RigidPassage& passage, const PassageFittings& fittings) {
   const double Q = flow_rate.si();
   if (!(Q > 0.0) || !std::isfinite(Q) || fittings.round_bends < 0 || fittings.mitre_bends < 0) {
     throw InputError(
@@ -55,117 +53,135 @@ std::vector<PressureTerm> passage_terms(const Fluid& fluid, FlowRate flow_rate,
                     fittings.round_bends, fittings.mitre_bends),
         "Give a positive flow rate, and numbers of bends that are not negative");
   }
-  std::vector<PressureTerm> terms;
-  terms.push_back({"duct", "exact series of a rectangular duct",
-                   passage_drop(fluid.viscosity, flow_rate, passage), Pressure{}});
-  const auto add = [&](const char* name, const char* source, double drop, double half_width) {
-    terms.push_back(
-        {name, source, Pressure::from_si(drop), Pressure::from_si(rectangular(half_width))});
-  };
+  const Length uncertainty = passage.height_uncertainty;
+  if (!(uncertainty >= Length{}) || (uncertainty > Length{} && uncertainty >= passage.height)) {
+    throw InputError(kWhere,
+                     fmt::format("its height is {:g} um, the uncertainty of that {:g} um",
+                                 passage.height.in(um), uncertainty.in(um)),
+                     "Give a standard uncertainty from 0 to below the height");
+  }
+}
+
+/// The flow in one passage, and the parts of its drop as they are added.
+class Parts {
+ public:
+  Parts(const Fluid& fluid, FlowRate flow_rate, const RigidPassage& passage)
+      : fluid_(fluid),
+        flow_rate_(flow_rate),
+        passage_(passage),
+        duct_(passage_drop(fluid.viscosity, flow_rate, passage)) {  // checks the sizes
+    const double w = passage.width.si(), h = passage.height.si();
+    const double diameter = 2.0 * w * h / (w + h), speed = flow_rate.si() / (w * h);
+    head_ = 0.5 * fluid.density.si() * speed * speed;
+    reynolds_ = speed * diameter / fluid.kinematic_viscosity().si();
+    x_plus_ = passage.length.si() / (diameter * reynolds_);
+  }
+
+  void duct() {
+    const double drop = duct_.si();
+    add("duct", "duct", "exact series of a rectangular duct", drop, drop, 0.0);
+  }
+  void contraction(double ratio) {
+    add("contraction", "contraction", "energy balance, Kays (1950)", head_ * (1.0 - ratio * ratio),
+        0.0, kEdgeLoss * head_ * (1.0 - ratio));
+  }
+  void development(double ratio) {
+    constexpr double kStep = 1e-3;  // relative; the central difference errs by its square
+    const EntryConstants constants = entry_constants(passage_.height / passage_.width);
+    const auto drop = [&](double x_plus) {
+      return head_ * entry_excess(constants, x_plus) * (1.0 - ratio);
+    };
+    const double all = drop(x_plus_);
+    const double viscous =
+        (drop(x_plus_ * (1.0 + kStep)) - drop(x_plus_ * (1.0 - kStep))) / (2.0 * kStep);
+    add("development", "development", "Shah (1978)", all, viscous,
+        std::hypot(kDevelopmentShare, ratio) * all);
+  }
+  void expansion(double ratio) {
+    // beta of the large section: that of the same shape, as good as known here.
+    const double beta = ratio > 0.0 ? momentum_factor(passage_) : 1.0;
+    const double back = 2.0 * head_ * ratio * beta * (1.0 - ratio);
+    add("expansion", "expansion", "momentum balance, Kays (1950)", -back, 0.0,
+        kExpansionShare * back);
+  }
+  void step(const char* name, double ratio) {
+    const double drop =
+        aperture_loss(fluid_.viscosity, flow_rate_, passage_.width, passage_.height).si() *
+        (1.0 - ratio);
+    add(name, "steps", "Roscoe (1949), Weissberg (1962)", drop, drop,
+        std::hypot(kHoleShape, kHoleInPlace, ratio) * drop);
+  }
+  /// @param creeping, inertial  K_1 and K_inf.
+  void bends(const char* name, int n, double creeping, double inertial) {
+    if (n == 0) return;
+    const double viscous = n * head_ * creeping / reynolds_;
+    const double drop = viscous + n * head_ * inertial;
+    add(name, "bends", "Hooper (1981)", drop, viscous, drop);
+  }
+  std::vector<PressureTerm> take() && { return std::move(terms_); }
+
+ private:
+  void add(const char* name, const char* formula, const char* source, double drop, double viscous,
+           double half_width) {
+    PressureTerm term;
+    term.name = name;
+    term.source = source;
+    term.formula = formula;
+    term.drop = Pressure::from_si(drop);
+    term.uncertainty = Pressure::from_si(rectangular(half_width));
+    term.by_viscosity = Pressure::from_si(viscous);
+    term.by_flow_rate = Pressure::from_si(2.0 * drop - viscous);
+    terms_.push_back(std::move(term));
+  }
+
+  Fluid fluid_;
+  FlowRate flow_rate_;
+  RigidPassage passage_;
+  Pressure duct_{};
+  double head_ = 0.0;  ///< rho U^2/2, Pa
+  double reynolds_ = 0.0, x_plus_ = 0.0;
+  std::vector<PressureTerm> terms_;
+};
+
+std::vector<PressureTerm> parts_of(const Fluid& fluid, FlowRate flow_rate,
+                                   const RigidPassage& passage, const PassageFittings& fittings) {
+  Parts parts(fluid, flow_rate, passage);
   const Area own = passage.width * passage.height;
-  const double w = passage.width.si(), h = passage.height.si();
-  const double diameter = 2.0 * w * h / (w + h), speed = Q / own.si();
-  const double head = 0.5 * fluid.density.si() * speed * speed;
-  const double reynolds = speed * diameter / fluid.kinematic_viscosity().si();
-  const double step = 1.5 * fluid.viscosity.si() * Q / std::pow(0.5 * diameter, 3);
   const auto upstream = area_ratio(fittings.from, fittings.from_reservoir, own, "before");
   const auto downstream = area_ratio(fittings.into, fittings.into_reservoir, own, "behind");
+  parts.duct();
   if (upstream) {
-    add("contraction", "energy balance, Kays (1950)", head * (1.0 - *upstream * *upstream),
-        kEdgeLoss * head);
-    const double development =
-        head * entry_excess(entry_constants(h / w), passage.length.si() / (diameter * reynolds));
-    add("development", "Shah (1978)", development, kDevelopmentShare * development);
-    add("step at the entry", "Sampson, Weissberg (1962)", step, kStepShare * step);
+    parts.contraction(*upstream);
+    parts.development(*upstream);
+    parts.step("step at the entry", *upstream);
   }
   if (downstream) {
-    // beta of the large section: that of the same shape, as good as known here.
-    const double beta = momentum_factor(passage);
-    const double back = 2.0 * head * *downstream * beta * (1.0 - *downstream);
-    add("expansion", "momentum balance, Kays (1950)", -back, kExpansionShare * back);
-    add("step at the exit", "Sampson, Weissberg (1962)", step, kStepShare * step);
+    parts.expansion(*downstream);
+    parts.step("step at the exit", *downstream);
   }
-  const double round = fittings.round_bends * head * (800.0 / reynolds + 0.25);
-  if (fittings.round_bends > 0) add("round bends", "Hooper (1981)", round, round);
-  const double mitre = fittings.mitre_bends * head * (1000.0 / reynolds + 1.15);
-  if (fittings.mitre_bends > 0) add("mitre bends", "Hooper (1981)", mitre, mitre);
+  parts.bends("round bends", fittings.round_bends, 800.0, 0.25);
+  parts.bends("mitre bends", fittings.mitre_bends, 1000.0, 1.15);
+  return std::move(parts).take();
+}
+
+}  // namespace
+
+std::vector<PressureTerm> passage_terms(const Fluid& fluid, FlowRate flow_rate,
+                                        const RigidPassage& passage,
+                                        const PassageFittings& fittings) {
+  constexpr double kStep = 1e-4;  // downwards, where a step stays one
+  fluid.validate(kWhere);
+  check(flow_rate, passage, fittings);
+  std::vector<PressureTerm> terms = parts_of(fluid, flow_rate, passage, fittings);
+  if (passage.height_uncertainty == Length{}) return terms;
+  RigidPassage lower = passage;
+  lower.height = (1.0 - kStep) * passage.height;
+  const std::vector<PressureTerm> below = parts_of(fluid, flow_rate, lower, fittings);
+  const double deviations = kStep * (passage.height / passage.height_uncertainty);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    terms[i].height_effect = (1.0 / deviations) * (terms[i].drop - below[i].drop);
+  }
   return terms;
-}
-
-PressureTerm simulated_drop(const std::vector<SimulatedDrop>& simulations, FlowRate flow_rate) {
-  constexpr const char* kSimulated = "simulated parasitic drop";
-  const double Q = flow_rate.si();
-  double largest = 0.0;
-  bool weighted = !simulations.empty();
-  for (const SimulatedDrop& one : simulations) {
-    if (!(one.flow_rate.si() > 0.0)) {
-      throw InputError(kSimulated,
-                       fmt::format("a simulation at {:g} mL/min", one.flow_rate.in(mL_per_min)),
-                       "Give simulations at positive flow rates");
-    }
-    largest = std::max(largest, one.flow_rate.si());
-    weighted = weighted && one.uncertainty.si() > 0.0;
-  }
-  const bool alone = simulations.size() == 1;
-  const double least = alone ? 0.99 * largest : 0.0;
-  if (!(Q > least && Q > 0.0 && Q <= 1.01 * largest)) {
-    throw InputError(
-        kSimulated,
-        fmt::format("asked at {:g} mL/min, with {} simulations up to {:g} mL/min",
-                    flow_rate.in(mL_per_min), simulations.size(),
-                    FlowRate::from_si(largest).in(mL_per_min)),
-        "Simulate the passages at this flow rate or beyond, at two flow rates or more");
-  }
-  PressureTerm term{"simulation", "simulation of the passages", Pressure{}, Pressure{}};
-  if (alone) {
-    term.drop = (flow_rate / simulations[0].flow_rate) * simulations[0].drop;
-    term.uncertainty = simulations[0].uncertainty;
-    return term;
-  }
-  // Normal equations of dp/Q0 = a q + b q^2 with q = Q/Q0: two unknowns, well scaled.
-  double n11 = 0.0, n12 = 0.0, n22 = 0.0, r1 = 0.0, r2 = 0.0;
-  for (const SimulatedDrop& one : simulations) {
-    const double q = one.flow_rate.si() / largest, u = weighted ? one.uncertainty.si() : 1.0;
-    n11 += q * q / (u * u);
-    n12 += q * q * q / (u * u);
-    n22 += q * q * q * q / (u * u);
-    r1 += q * one.drop.si() / (u * u);
-    r2 += q * q * one.drop.si() / (u * u);
-  }
-  const double determinant = n11 * n22 - n12 * n12;
-  if (!(determinant > 1e-9 * n11 * n22)) {  // Cauchy-Schwarz: 0 if all flow rates are one
-    throw InputError(kSimulated, "all simulations are at one flow rate",
-                     "Simulate a second flow rate");
-  }
-  const double q = Q / largest;
-  const double a = (n22 * r1 - n12 * r2) / determinant, b = (n11 * r2 - n12 * r1) / determinant;
-  term.drop = Pressure::from_si(a * q + b * q * q);
-  if (weighted) {
-    const double variance =
-        (n22 * q * q - 2.0 * n12 * q * q * q + n11 * q * q * q * q) / determinant;
-    term.uncertainty = Pressure::from_si(std::sqrt(variance));
-  }
-  return term;
-}
-
-Estimate parasitic_estimate(const std::vector<PressureTerm>& terms, double viscosity_uncertainty) {
-  Estimate sum;
-  for (const PressureTerm& term : terms) {
-    sum.value += term.drop.si();
-    sum.terms.push_back({"parasitic drop, " + term.name, "parasitic drop", term.uncertainty.si()});
-  }
-  sum.terms.push_back({"viscosity", "viscosity", sum.value * viscosity_uncertainty});
-  return sum;
-}
-
-Estimate compliant_drop(Pressure transducer, Pressure uncertainty, const Estimate& parasitic) {
-  Estimate drop;
-  drop.value = transducer.si() - parasitic.value;
-  drop.terms.push_back({"transducer", "transducer", uncertainty.si()});
-  for (const Estimate::Term& term : parasitic.terms) {
-    drop.terms.push_back({term.variable, term.source, -term.effect});
-  }
-  return drop;
 }
 
 }  // namespace manoscope::flow

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 
@@ -13,6 +16,7 @@ namespace {
 constexpr RigidPassage kPassage{5.0 * mm, 1.7 * mm, 175.0 * um};
 constexpr Fluid kWater{1.0 * mPa_s, 998.0 * kg_per_m3};
 constexpr FlowRate kFlow = 70.0 * mL_per_min;
+constexpr PassageFittings kReservoirs{{}, true, {}, true};
 
 double head() {  // rho U^2/2 by hand
   const double speed = 70e-6 / 60.0 / (1.7e-3 * 175e-6);
@@ -64,15 +68,102 @@ TEST(PassageTerms, OfAnExpansionFollowTheMomentumBalance) {
       -0.6, 0.005);
 }
 
-TEST(PassageTerms, OfTwoEndsInCreepingFlowAreSampsons) {
-  // A square of 100 um, R = 50 um: 3 eta Q/R^3 by hand at 1 uL/min.
-  PassageFittings ends;
-  ends.from_reservoir = ends.into_reservoir = true;
+TEST(PassageTerms, OfTwoEndsOfASlitAreHasimotosWithinAnEllipsesError) {
+  // 32 eta (Q/w)/(pi h^2) for both by hand; the ends of the slit and the ellipse add 6 %.
+  const auto terms = passage_terms(kWater, kFlow, kPassage, kReservoirs);
+  const double by_hand =
+      32.0 * 1e-3 * (70e-6 / 60.0 / 1.7e-3) / (std::numbers::pi * 175e-6 * 175e-6);
+  EXPECT_NEAR((drop(terms, "step at the entry") + drop(terms, "step at the exit")) / by_hand, 1.0,
+              0.10);
+}
+
+TEST(PassageTerms, OfTwoEndsOfASquareAreSampsonsOfItsArea) {
+  // A square of 100 um at 1 uL/min: 3 eta Q/R^3 with pi R^2 = (100 um)^2.
   const auto terms =
-      passage_terms(kWater, 1e-3 * mL_per_min, {1.0 * mm, 100.0 * um, 100.0 * um}, ends);
-  const double by_hand = 3.0 * 1e-3 * (1e-9 / 60.0) / std::pow(50e-6, 3);
+      passage_terms(kWater, 1e-3 * mL_per_min, {1.0 * mm, 100.0 * um, 100.0 * um}, kReservoirs);
+  const double by_hand =
+      3.0 * 1e-3 * (1e-9 / 60.0) / std::pow(100e-6 / std::sqrt(std::numbers::pi), 3);
   EXPECT_NEAR((drop(terms, "step at the entry") + drop(terms, "step at the exit")) / by_hand, 1.0,
               1e-12);
+}
+
+/// Between sections that are 1/ratio times as large as the passage's.
+std::vector<PressureTerm> between_sections(double ratio) {
+  PassageFittings ends;
+  ends.from = ends.into = (1.0 / ratio) * (kPassage.width * kPassage.height);
+  return passage_terms(kWater, kFlow, kPassage, ends);
+}
+
+TEST(PassageTerms, OfAStepThatIsNoneCostNothing) {
+  // An area is rounded to 1e-16, what hangs on it with it.
+  for (const PressureTerm& term : between_sections(1.0 - 1e-15)) {
+    if (term.name == "duct") continue;
+    EXPECT_NEAR(term.drop.si(), 0.0, 1e-9) << term.name;
+    EXPECT_NEAR(term.uncertainty.si(), 0.0, 1e-9) << term.name;
+  }
+}
+
+TEST(PassageTerms, OfAStepGrowWithItUpToThoseOfAReservoir) {
+  const auto all = passage_terms(kWater, kFlow, kPassage, kReservoirs);
+  for (const char* name : {"contraction", "development", "step at the entry", "step at the exit"}) {
+    double last = 0.0;
+    for (const double ratio : {0.999, 0.9, 0.5, 0.1, 0.001}) {
+      const double now = drop(between_sections(ratio), name);
+      EXPECT_GT(now, last) << name << " at " << ratio;
+      last = now;
+    }
+    EXPECT_LT(last, drop(all, name));
+    EXPECT_NEAR(last / drop(all, name), 1.0, 1.1e-3) << name;  // 1 - ratio
+  }
+}
+
+TEST(PassageTerms, OfAStepHaveBarsThatHoldOtherWeights) {
+  // The half width of the weight is ratio (1 - ratio): to (1 - ratio)^2 and to 1 - ratio^2.
+  const auto all = passage_terms(kWater, kFlow, kPassage, kReservoirs);
+  for (const double ratio : {0.1, 0.5, 0.9}) {
+    const auto terms = between_sections(ratio);
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      if (terms[i].formula != "development" && terms[i].formula != "steps") continue;
+      const double half_width = std::sqrt(3.0) * terms[i].uncertainty.si();
+      EXPECT_GE(half_width, ratio * (1.0 - ratio) * all[i].drop.si()) << terms[i].name;
+    }
+  }
+}
+
+TEST(PassageTerms, FollowFlowRateAndViscosityAsTheySay) {
+  // Differences of whole drops against the parts' own derivatives; central, 1e-6 by the square.
+  PassageFittings fittings;
+  fittings.from_reservoir = true;
+  fittings.into = 3.0 * (kPassage.width * kPassage.height);
+  fittings.round_bends = fittings.mitre_bends = 1;
+  constexpr double kStep = 1e-3;
+  const auto at = [&](double by_viscosity, double by_flow_rate) {
+    return passage_terms({by_viscosity * kWater.viscosity, kWater.density}, by_flow_rate * kFlow,
+                         kPassage, fittings);
+  };
+  const auto terms = at(1.0, 1.0);
+  ASSERT_EQ(terms.size(), 8U);
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const double tolerance = 1e-5 * std::abs(terms[i].drop.si()) + 1e-9;
+    EXPECT_NEAR((at(1.0 + kStep, 1.0)[i].drop - at(1.0 - kStep, 1.0)[i].drop).si() / (2.0 * kStep),
+                terms[i].by_viscosity.si(), tolerance)
+        << terms[i].name;
+    EXPECT_NEAR((at(1.0, 1.0 + kStep)[i].drop - at(1.0, 1.0 - kStep)[i].drop).si() / (2.0 * kStep),
+                terms[i].by_flow_rate.si(), tolerance)
+        << terms[i].name;
+  }
+}
+
+TEST(PassageTerms, FollowTheHeightOfThePassage) {
+  RigidPassage passage = kPassage;
+  passage.height_uncertainty = 1.75 * um;  // 1 %
+  const auto terms = passage_terms(kWater, kFlow, passage, kReservoirs);
+  // w h^3 (1 - 0.63 h/w): -3 and 0.07 more; the difference errs by some 1e-4.
+  EXPECT_NEAR(terms[0].height_effect / terms[0].drop, -0.03 + 0.01 * 0.0694, 1e-4);
+  EXPECT_NEAR(terms[1].height_effect / terms[1].drop, -0.02, 1e-5);  // rho U^2/2
+  EXPECT_EQ(passage_terms(kWater, kFlow, kPassage, kReservoirs)[0].height_effect, Pressure{});
+  passage.height_uncertainty = passage.height;
+  EXPECT_THROW(passage_terms(kWater, kFlow, passage, {}), InputError);
 }
 
 TEST(PassageTerms, OfBendsAreBetweenNothingAndTwice) {
@@ -94,34 +185,6 @@ TEST(PassageTerms, RefuseASectionThatIsSmallerThanThePassage) {
   ends.round_bends = -1;
   EXPECT_THROW(passage_terms(kWater, kFlow, kPassage, ends), InputError);
   EXPECT_THROW(passage_terms(kWater, -kFlow, kPassage, {}), InputError);
-}
-
-TEST(SimulatedDrop, FollowsFrictionAndInertia) {
-  const auto law = [](double q) { return Pressure::from_si(40.0 * q + 0.3 * q * q); };  // mL/min
-  std::vector<SimulatedDrop> simulations;
-  for (const double q : {10.0, 40.0, 70.0})
-    simulations.push_back({q * mL_per_min, law(q), 5.0 * Pa});
-  EXPECT_NEAR(simulated_drop(simulations, 55.0 * mL_per_min).drop / law(55.0), 1.0, 1e-10);
-  // At the one simulation that weighs most the error cannot exceed its own.
-  const double u = simulated_drop(simulations, 70.0 * mL_per_min).uncertainty.si();
-  EXPECT_LT(u, 5.0);
-  EXPECT_GT(u, 4.0);
-}
-
-TEST(SimulatedDrop, RefusesToReachBeyondItsSimulations) {
-  const std::vector<SimulatedDrop> one{{20.0 * mL_per_min, 1.0 * kPa, 10.0 * Pa}};
-  EXPECT_EQ(simulated_drop(one, 20.0 * mL_per_min).uncertainty, 10.0 * Pa);
-  EXPECT_THROW(simulated_drop(one, 10.0 * mL_per_min), InputError);
-  EXPECT_THROW(simulated_drop({}, 10.0 * mL_per_min), InputError);
-  EXPECT_THROW(simulated_drop({one[0], one[0]}, 10.0 * mL_per_min), InputError);
-}
-
-TEST(CompliantDrop, SubtractsWithTheUncertaintiesOfAllTerms) {
-  const std::vector<PressureTerm> terms{{"duct", "", 300.0 * Pa, Pressure{}},
-                                        {"bends", "", 100.0 * Pa, 40.0 * Pa}};
-  const Estimate drop = compliant_drop(2000.0 * Pa, 30.0 * Pa, parasitic_estimate(terms, 0.01));
-  EXPECT_DOUBLE_EQ(drop.value, 1600.0);
-  EXPECT_NEAR(drop.standard_uncertainty(), std::hypot(30.0, 40.0, 4.0), 1e-12);
 }
 
 }  // namespace

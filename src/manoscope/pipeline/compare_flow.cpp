@@ -60,11 +60,10 @@ void take_passages(const experiment::Experiment& experiment, const FlowRun& run,
                              [&] { return passages(experiment, run.flow_rate); });
   if (!parts || parts->empty()) return;
   found.passages = *parts;
-  found.parasitic = flow::parasitic_estimate(
-      *parts, flow_uncertainty_of(experiment).viscosity / experiment.fluid.viscosity);
+  found.parasitic = flow::parasitic_estimate(*parts, passage_uncertainty_of(experiment));
   if (!run.transducer_drop) return;
-  found.compliant = flow::compliant_drop(
-      *run.transducer_drop, run.transducer_uncertainty.value_or(Pressure{}), *found.parasitic);
+  found.compliant =
+      flow::compliant_drop(*run.transducer_drop, run.transducer_uncertainty, *found.parasitic);
 }
 
 }  // namespace

@@ -207,6 +207,30 @@ TEST(CompareFlowWith, ModelsSwitchedOffPassagesAreStillTold) {
   EXPECT_EQ(m.verdict, (std::vector<std::string>{"", ""}));
 }
 
+TEST(CompareFlowWith, ATransducerOfUnknownNoiseTheDropOfTheChannelHasNoBar) {
+  MomentumExperiment test;
+  test.replace("[instrument]\n", "[instrument]\nflow_rate_uncertainty = 0.02\n");
+  const Measurement known = test.measure();
+  test.remove_line("pressure_drop_uncertainty");
+  const Measurement m = test.measure(with_models("momentum"));
+  for (Index r = 0; r < 2; ++r) {
+    EXPECT_EQ(m.compliant_drop[r], known.compliant_drop[r]);
+    EXPECT_TRUE(std::isnan(m.transducer_drop_uncertainty[r]));
+    EXPECT_TRUE(std::isnan(m.compliant_drop_uncertainty[r]));
+    EXPECT_TRUE(std::isfinite(m.predicted_drop[r]));
+    EXPECT_TRUE(std::isnan(m.predicted_en_number[r]));
+    // Ducts alone go as Q; with the noise known both errors are in the bar.
+    EXPECT_NEAR(m.parasitic_drop_uncertainty[r] / m.parasitic_drop[r], 0.02, 1e-12);
+    EXPECT_NEAR(
+        known.compliant_drop_uncertainty[r],
+        std::hypot(known.transducer_drop_uncertainty[r], known.parasitic_drop_uncertainty[r]),
+        1e-9);
+  }
+  // Without weights chance has no say in the fits.
+  EXPECT_TRUE(std::isnan(m.drop_fit_p_value));
+  EXPECT_NEAR(m.drop_fit_linear / known.drop_fit_linear, 1.0, 1e-9);  // of two points: round-off
+}
+
 TEST(CompareFlowWith, JointPressureIsOfferedAndLeavesTheReadingAlone) {
   MomentumExperiment test;
   MeasureOptions options = with_models("momentum");

@@ -24,7 +24,20 @@ flow::PressureTerm named(const char* passage, flow::PressureTerm term) {
 }
 
 flow::RigidPassage sizes(const experiment::Passage& passage) {
-  return {passage.length, passage.width, passage.height};
+  return {passage.length, passage.width, passage.height,
+          passage.height_uncertainty.value_or(Length{})};
+}
+
+/// Backwards or at rest the fittings have no formula; the duct has.
+flow::PressureTerm duct_alone(const flow::Fluid& fluid, FlowRate flow_rate,
+                              const flow::RigidPassage& passage) {
+  flow::PressureTerm duct;
+  duct.name = duct.formula = "duct";
+  duct.source = "exact series";
+  duct.drop = flow::passage_drop(fluid.viscosity, flow_rate, passage);
+  duct.by_flow_rate = duct.by_viscosity = duct.drop;
+  duct.height_effect = -3.0 * (passage.height_uncertainty / passage.height) * duct.drop;
+  return duct;
 }
 
 std::vector<flow::PressureTerm> passage_parts(const Experiment& experiment, const char* name,
@@ -35,9 +48,7 @@ std::vector<flow::PressureTerm> passage_parts(const Experiment& experiment, cons
   if (flow_rate > FlowRate{}) {
     parts = flow::passage_terms(fluid, flow_rate, sizes(passage), passage.fittings);
   } else {
-    // Backwards or at rest the fittings have no formula; the duct has.
-    parts.push_back({"duct", "exact series",
-                     flow::passage_drop(fluid.viscosity, flow_rate, sizes(passage)), Pressure{}});
+    parts.push_back(duct_alone(fluid, flow_rate, sizes(passage)));
   }
   for (flow::PressureTerm& part : parts) part = named(name, part);
   return parts;
@@ -97,6 +108,11 @@ validation::FlowUncertainty flow_uncertainty_of(const Experiment& experiment) {
   return {experiment.channel.height_uncertainty.value_or(Length{}),
           experiment.fluid.viscosity_uncertainty.value_or(Viscosity{}),
           experiment.instrument.flow_rate_uncertainty.value_or(0.0)};
+}
+
+flow::PassageUncertainty passage_uncertainty_of(const Experiment& experiment) {
+  const validation::FlowUncertainty flowing = flow_uncertainty_of(experiment);
+  return {flowing.flow_rate, flowing.viscosity / experiment.fluid.viscosity};
 }
 
 std::optional<flow::WallShape> shape_across(const maps::ResponsePicture& response,
@@ -199,7 +215,7 @@ validation::Outlet behind_passage(const Experiment& experiment, FlowRate flow_ra
   if (!experiment.rigid.outlet) return {gauge, {}};
   const Estimate drop = flow::parasitic_estimate(
       passage_parts(experiment, "outlet", *experiment.rigid.outlet, flow_rate),
-      flow_uncertainty_of(experiment).viscosity / experiment.fluid.viscosity);
+      passage_uncertainty_of(experiment));
   return {gauge + Pressure::from_si(drop.value), Pressure::from_si(drop.standard_uncertainty())};
 }
 

@@ -20,6 +20,7 @@ flow::Channel channel_of(const experiment::Experiment& experiment);
 flow::Fluid fluid_of(const experiment::Experiment& experiment);
 inversion::GaugeErrors gauge_of(const experiment::Experiment& experiment);
 validation::FlowUncertainty flow_uncertainty_of(const experiment::Experiment& experiment);
+flow::PassageUncertainty passage_uncertainty_of(const experiment::Experiment& experiment);
 
 /// The channel as the flow models see it, and where that comes from.
 struct FlowKnowledge {

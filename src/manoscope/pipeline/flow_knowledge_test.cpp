@@ -36,7 +36,7 @@ experiment::Experiment channel_of_s1() {
   return experiment;
 }
 
-experiment::Passage duct(Length length) { return {length, 1.7 * mm, 175.0 * um, {}}; }
+experiment::Passage duct(Length length) { return {length, 1.7 * mm, 175.0 * um, {}, {}}; }
 
 TEST(ShapeAcross, IsThatOfTheWall) {
   const auto membrane =
@@ -108,6 +108,45 @@ TEST(Passages, AreNamedAndASimulationTakesTheirPlace) {
   EXPECT_THROW(passages(experiment, 50.0 * mL_per_min), InputError);
 }
 
+TEST(Passages, OfTheSameFormulaErrTogether) {
+  experiment::Experiment experiment = channel_of_s1();
+  const FlowRate Q = 20.0 * mL_per_min;
+  experiment.rigid.inlet = duct(5.0 * mm);
+  experiment.rigid.inlet->fittings.from_reservoir = true;
+  experiment.rigid.inlet->fittings.into_reservoir = true;
+  const auto error = [&] {
+    return flow::parasitic_estimate(passages(experiment, Q), passage_uncertainty_of(experiment))
+        .standard_uncertainty();
+  };
+  const double one = error();
+  experiment.rigid.outlet = experiment.rigid.inlet;
+  EXPECT_NEAR(error() / one, 2.0, 1e-12);
+}
+
+TEST(Passages, OfDuctsFollowFlowRateViscosityAndHeight) {
+  experiment::Experiment experiment = channel_of_s1();
+  const FlowRate Q = 20.0 * mL_per_min;
+  experiment.rigid.inlet = duct(5.0 * mm);
+  experiment.rigid.outlet = duct(10.0 * mm);
+  const auto estimate = [&](FlowRate flow_rate) {
+    return flow::parasitic_estimate(passages(experiment, flow_rate),
+                                    passage_uncertainty_of(experiment));
+  };
+  EXPECT_EQ(estimate(Q).standard_uncertainty(), 0.0);
+  experiment.instrument.flow_rate_uncertainty = 0.02;
+  const double drop = estimate(Q).value;
+  EXPECT_NEAR(estimate(Q).standard_uncertainty() / drop, 0.02, 1e-12);
+  EXPECT_NEAR(estimate(-Q).standard_uncertainty() / drop, 0.02, 1e-12);
+  experiment.fluid.viscosity_uncertainty = 0.01 * experiment.fluid.viscosity;
+  EXPECT_NEAR(estimate(Q).standard_uncertainty() / drop, std::hypot(0.02, 0.01), 1e-12);
+  // 1 % of one of two heights: 3 % of its share; the sides of the duct make it 2.93 %.
+  experiment.instrument.flow_rate_uncertainty = 0.0;
+  experiment.fluid.viscosity_uncertainty.reset();
+  experiment.rigid.inlet->height_uncertainty = 0.01 * experiment.rigid.inlet->height;
+  EXPECT_NEAR(estimate(Q).standard_uncertainty() / drop, 0.01, 3e-4);
+  EXPECT_NEAR(estimate(-Q).standard_uncertainty() / drop, 0.01, 3e-4);
+}
+
 TEST(BehindPassage, AddsWhatThePassageTakes) {
   experiment::Experiment experiment = channel_of_s1();
   const FlowRate Q = 20.0 * mL_per_min;
@@ -118,6 +157,9 @@ TEST(BehindPassage, AddsWhatThePassageTakes) {
   const validation::Outlet outlet = behind_passage(experiment, Q, 300.0 * Pa);
   EXPECT_NEAR(outlet.pressure.si(), 300.0 + drop, 1e-9);
   EXPECT_NEAR(outlet.uncertainty.si(), 0.01 * drop, 1e-9);
+  experiment.instrument.flow_rate_uncertainty = 0.02;
+  EXPECT_NEAR(behind_passage(experiment, Q, 300.0 * Pa).uncertainty.si(),
+              std::hypot(0.01, 0.02) * drop, 1e-9);
 }
 
 TEST(OutletOf, IsReadOffTheWallUnlessAGaugeTellsIt) {

@@ -105,7 +105,9 @@ void store_comparison(const validation::ModelComparison& comparison, Index r,
 void store_drops(const FlowRun& run, const FlowFindings& found, Index r, FlowChecks& checks) {
   if (run.transducer_drop) {
     checks.transducer_drop[r] = run.transducer_drop->si();
-    checks.transducer_drop_uncertainty[r] = run.transducer_uncertainty.value_or(Pressure{}).si();
+    if (run.transducer_uncertainty) {
+      checks.transducer_drop_uncertainty[r] = run.transducer_uncertainty->si();
+    }
   }
   if (found.parasitic) {
     checks.parasitic_drop[r] = found.parasitic->value;
@@ -128,23 +130,25 @@ void store_drops(const FlowRun& run, const FlowFindings& found, Index r, FlowChe
   const double variance = std::pow(predicted.standard_uncertainty(), 2) +
                           std::pow(found.compliant->standard_uncertainty(), 2) -
                           2.0 * covariance(predicted, *found.compliant);
-  if (variance > 0.0) {
+  if (std::isgreater(variance, 0.0)) {  // NaN where the transducer's noise is not known
     checks.predicted_en_number[r] =
         std::abs(predicted.value - found.compliant->value) / (kExpansion * std::sqrt(variance));
   }
 }
 
-/// Fits to the drops of the channel; to those of the transducer where no passage is told.
+/// Fits to the drops of the channel; to those of the transducer where no passage is told. Points
+/// weigh by the transducer's own noise: what all runs share moves the fits as a whole.
 void store_fits(const std::vector<FlowRun>& runs, FlowChecks& checks) {
   const bool compliant = checks.compliant_drop.isFinite().any();
   const Array1& drop = compliant ? checks.compliant_drop : checks.transducer_drop;
-  const Array1& uncertainty =
-      compliant ? checks.compliant_drop_uncertainty : checks.transducer_drop_uncertainty;
+  bool weighted = true;
   std::vector<validation::DropPoint> points;
   for (Index r = 0; r < drop.size(); ++r) {
     if (!std::isfinite(drop[r])) continue;
-    points.push_back({runs[static_cast<std::size_t>(r)].flow_rate, Pressure::from_si(drop[r]),
-                      Pressure::from_si(uncertainty[r])});
+    const FlowRun& run = runs[static_cast<std::size_t>(r)];
+    const Pressure noise = run.transducer_uncertainty.value_or(Pressure{});
+    weighted = weighted && noise > Pressure{};
+    points.push_back({run.flow_rate, Pressure::from_si(drop[r]), noise});
   }
   try {
     const validation::QuadraticFit quadratic = validation::fit_quadratic(points);
@@ -152,7 +156,7 @@ void store_fits(const std::vector<FlowRun>& runs, FlowChecks& checks) {
     checks.drop_fit_linear_uncertainty = quadratic.linear_uncertainty;
     checks.drop_fit_quadratic = quadratic.quadratic;
     checks.drop_fit_quadratic_uncertainty = quadratic.quadratic_uncertainty;
-    if (quadratic.fit.dof > 0.0 && (uncertainty.isNaN() || uncertainty > 0.0).all()) {
+    if (quadratic.fit.dof > 0.0 && weighted) {
       checks.drop_fit_p_value = quadratic.fit.tail;
     }
     const validation::PowerFit power = validation::fit_power(points);

@@ -107,13 +107,16 @@ std::string channel_drops_table(const Measurement& m) {
       "gauge is told, the pressure at the outlet is that of the reading.",
       kExpansion,
       m.verdict_model.empty() ? std::string("the flow model") : escape_html(m.verdict_model));
-  words += passages ? " Parasitic: what the rigid passages between gauge and channel cost, by part "
-                      "(uncertainty of its formula) and in all (viscosity included). "
-                      "E<sub>n</sub>: predicted against transducer − parasitic. The transducer is "
-                      "independent of the wall and its curves unless it is the gauge they were "
-                      "made with; that the passages are right, it takes for granted."
-                    : " The experiment tells of no rigid passages: what they cost is in the "
-                      "transducer's reading, and nothing is held against it.";
+  words +=
+      passages
+          ? " Parasitic: what the rigid passages between gauge and channel cost, by part "
+            "(uncertainty of its formula) and in all (flow rate, viscosity and the height of the "
+            "passages included). E<sub>n</sub>: predicted against transducer − parasitic. The "
+            "transducer is "
+            "independent of the wall and its curves unless it is the gauge they were "
+            "made with; that the passages are right, it takes for granted."
+          : " The experiment tells of no rigid passages: what they cost is in the "
+            "transducer's reading, and nothing is held against it.";
   return table(words, head, body, m.run.size() > 14);
 }
 

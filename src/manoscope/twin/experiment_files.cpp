@@ -73,6 +73,9 @@ std::string instrument_section(const Scenario& scenario) {
   if (gauge.zero_uncertainty > Pressure{}) {
     text += fmt::format("pressure_zero_uncertainty = {}\n", best(gauge.zero_uncertainty));
   }
+  if (!scenario.flow_rates.empty()) {
+    text += fmt::format("pressure_drop_uncertainty = {}\n", best(gauge.transducer_noise));
+  }
   return text;
 }
 
