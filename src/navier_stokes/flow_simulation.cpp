@@ -42,7 +42,7 @@ Cells cells_of(const SimulatedChannel& given, const MeshOptions& mesh) {
   const bool plane = mesh.dim == 2;
   const int least = plane ? 60 : 40, most = plane ? 600 : 200;
   const int along =
-      std::clamp(static_cast<int>(std::lround((plane ? 1.35 : 1.0) * gaps)), least, most);
+      std::clamp(static_cast<int>(std::lround((plane ? 1.35 : 0.5) * gaps)), least, most);
   return {mesh.cells_along > 0 ? mesh.cells_along : along,
           mesh.cells_up > 0 ? mesh.cells_up : (plane ? 8 : 4),
           mesh.cells_across > 0 ? mesh.cells_across : 8};
