@@ -48,16 +48,24 @@ json list(const Array1& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
+/// The value furthest from 0, with its sign.
+double extreme(const Array1& values) {
+  Index place = 0;
+  values.abs().maxCoeff(&place);
+  return values[place];
+}
+
 std::string drops_text(const pipeline::Predictions& predictions) {
   std::vector<std::vector<std::string>> rows{{"Q [mL/min]", "dp ± U [Pa]", "p inlet [Pa]",
-                                              "p outlet [Pa]", "zeta max [um]", "Re h/l", "flags"}};
+                                              "p outlet [Pa]", "zeta extreme [um]", "Re h/l",
+                                              "flags"}};
   for (const FlowPrediction& flow : predictions.flows) {
     const Index last = flow.pressure.size() - 1;
     rows.push_back({fmt::format("{:.4g}", flow.flow_rate.in(mL_per_min)),
                     value_text(flow.drop.value, flow.drop.standard_uncertainty()),
                     fmt::format("{:.0f}", flow.pressure[0]),
                     fmt::format("{:.0f}", flow.pressure[last]),
-                    fmt::format("{:.2f}", flow.zeta.maxCoeff() * 1e6),
+                    fmt::format("{:.2f}", extreme(flow.zeta) * 1e6),
                     fmt::format("{:.2g}", flow.error.reduced_reynolds),
                     any_flags(flow) == 0 ? std::string("-") : flag_names(any_flags(flow))});
   }
@@ -84,6 +92,9 @@ std::string profile_text(const FlowPrediction& flow) {
 std::string predictions_text(const pipeline::Predictions& predictions, bool in_short) {
   std::string text = "Predicted from the calibration, drop between the ends of the channel\n" +
                      drops_text(predictions);
+  for (const std::string& doubt : predictions.doubts) {
+    if (!doubt.empty()) text += doubt + '\n';
+  }
   if (in_short) return text;
   const flow::FlowModelInfo& model = flow::flow_model_info(predictions.flows.front().model);
   text += fmt::format("U: expanded uncertainty, k = 2. Flow model {}: {}.\n", model.name,
@@ -100,7 +111,9 @@ std::string predictions_text(const pipeline::Predictions& predictions, bool in_s
 
 std::string predictions_json(const pipeline::Predictions& predictions) {
   json flows = json::array();
-  for (const FlowPrediction& flow : predictions.flows) {
+  for (std::size_t f = 0; f < predictions.flows.size(); ++f) {
+    const FlowPrediction& flow = predictions.flows[f];
+    const std::string& doubt = predictions.doubts[f];
     json flags = json::array();
     for (Index i = 0; i < flow.flags.size(); ++i) flags.push_back(flag_names(flow.flags[i]));
     flows.push_back({{"flow_rate_m3_s", flow.flow_rate.si()},
@@ -114,7 +127,8 @@ std::string predictions_json(const pipeline::Predictions& predictions) {
                      {"pressure_uncertainty_Pa", list(flow.uncertainty.standard())},
                      {"deflection_m", list(flow.zeta)},
                      {"deflection_uncertainty_m", list(flow.zeta_uncertainty.standard())},
-                     {"flags", flags}});
+                     {"flags", flags},
+                     {"doubt", doubt.empty() ? json(nullptr) : json(doubt)}});
   }
   return flows.dump(2) + '\n';
 }

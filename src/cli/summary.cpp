@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "manoscope/core/uncertainty.hpp"
+#include "manoscope/report/flow_verdict.hpp"
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
 #include "summary_checks.hpp"
@@ -18,12 +19,6 @@ namespace {
 using nlohmann::json;
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-/// Whether QR and dp_e agree, in the words of the report.
-std::string verdict(double en_number) {
-  if (!std::isfinite(en_number)) return "none";
-  return en_number <= 1.0 ? "agrees" : "disagrees";
-}
 
 /// p(x) of the runs [first, last) at stations spread evenly over the channel.
 std::string pressure_table(const results::Measurement& m, Index first, Index last) {
@@ -43,6 +38,38 @@ std::string pressure_table(const results::Measurement& m, Index first, Index las
     rows.push_back(std::move(row));
   }
   return text_table(rows);
+}
+
+/// dp_e and QR of every run: what their bars alone say, and what they say with the stated error of
+/// eq. (4).
+std::string drops_text(const results::Measurement& m) {
+  constexpr double kMlPerMin = 60e6;
+  const Index paper = report::flow_model_row(m, "paper");
+  std::vector<std::vector<std::string>> rows{{"run", "Q [mL/min]", "Re", "section [mm]",
+                                              "dp_e ± U [Pa]", "QR ± U [Pa]", "E_n",
+                                              "eq. (4) as exact"}};
+  if (paper >= 0) rows.front().push_back("with its error");
+  for (Index r = 0; r < m.flow_rate.size(); ++r) {
+    const double start = m.test_section(r, 0), end = m.test_section(r, 1);
+    rows.push_back(
+        {m.run[static_cast<std::size_t>(r)], fmt::format("{:.4g}", m.flow_rate[r] * kMlPerMin),
+         fmt::format("{:.0f}", m.reynolds[r]),
+         std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
+                              : std::string("none"),
+         value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
+         value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
+         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-"),
+         report::resistance_word(m.en_number[r])});
+    if (paper >= 0) rows.back().push_back(report::verdict_word(report::flow_verdict(m, paper, r)));
+  }
+  return fmt::format(
+      "Does the flow agree?\n{}U: expanded uncertainty, k = 2. dp_e: drop read off the wall over "
+      "the section. QR: the paper's eq. (4),\nno inertia or entry flow. {}\nE_n and what follows "
+      "it take eq. (4) as exact and its inlet as known: beyond U may be the formula's.{}\n",
+      text_table(rows), report::resistance_uncertainty_text(m),
+      paper >= 0 ? "\nWith its error: the verdict, by the stated error of eq. (4), the inlet's and "
+                   "p(x) along x."
+                 : "");
 }
 
 /// What a user should know of a wall that left its branch; nothing of one that did not.
@@ -68,29 +95,9 @@ json snaps_json(const twin::SnapTruth& snaps) {
 }  // namespace
 
 std::string summary_text(const results::Measurement& m) {
-  constexpr double kMlPerMin = 60e6;
-  std::vector<std::vector<std::string>> rows{{"run", "Q [mL/min]", "Re", "section [mm]",
-                                              "dp_e ± U [Pa]", "QR ± U [Pa]", "E_n", "verdict"}};
-  for (Index r = 0; r < m.flow_rate.size(); ++r) {
-    const double start = m.test_section(r, 0), end = m.test_section(r, 1);
-    rows.push_back(
-        {m.run[static_cast<std::size_t>(r)], fmt::format("{:.4g}", m.flow_rate[r] * kMlPerMin),
-         fmt::format("{:.0f}", m.reynolds[r]),
-         std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
-                              : std::string("none"),
-         value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
-         value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
-         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-"),
-         verdict(m.en_number[r])});
-  }
   std::string text;
   if (m.flow_rate.size() > 0) {
-    text += "Does the flow agree?\n" + text_table(rows);
-    text += fmt::format(
-        "U: expanded uncertainty, k = 2. dp_e: drop read off the wall over the section. QR: the "
-        "paper's eq. (4),\nno inertia or entry flow. {}\n",
-        report::resistance_uncertainty_text(m));
-    text += flow_checks_text(m);
+    text += drops_text(m) + flow_checks_text(m);
   } else {
     text +=
         fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "manoscope/results/measurement.hpp"
 
@@ -73,7 +74,7 @@ inline void add_example_flow(results::Measurement& m) {
       const double part = share[static_cast<std::size_t>(k)] * m.extracted_drop(r);
       m.correction_drop(k, r) = part;
       m.correction_channel_drop(k, r) = 1.2 * part;
-      m.correction_uncertainty(k, r) = k == 3 ? 0.01 * m.extracted_drop(r) : 0.0;
+      m.correction_uncertainty(k, r) = k == 3 ? 0.01 * m.extracted_drop(r) : std::nan("");
     }
     m.local_reynolds.row(r) = m.reynolds(r) * (1.0 + 0.01 * m.x.transpose() / m.channel_length);
     m.wall_shear_roof.row(r) =

@@ -174,7 +174,8 @@ void store_runs(const std::vector<FlowRun>& runs, const std::vector<RunFindings>
       m.extracted_drop_uncertainty[r] = found.agreement->extracted.standard_uncertainty();
       m.resistance_drop[r] = found.agreement->resistance.value;
       m.resistance_drop_uncertainty[r] = found.agreement->resistance.standard_uncertainty();
-      m.en_number[r] = found.agreement->en_number;
+      // Without a stated uncertainty of the gap there is no verdict: 1 % of it is 3 % of QR.
+      if (m.channel_height_uncertainty > 0.0) m.en_number[r] = found.agreement->en_number;
     }
     for (const inversion::Intersection& crossing : found.intersections) {
       m.crossing_run.push_back(static_cast<int>(r));

@@ -80,6 +80,13 @@ std::vector<LevelDoubt> doubtful_levels(const calibration::ConstitutiveCurves& c
                                         calibration::FitCurvesOptions options,
                                         const inversion::Stretch& stretch);
 
+/// Whether a march has no pressure for a run.
+bool march_broke_down(const validation::ModelComparison& comparison);
+
+/// What the flow of one run makes doubtful, in words.
+std::vector<std::string> doubt_flow(const experiment::Experiment& experiment, const FlowRun& run,
+                                    const RunFindings& found);
+
 /// Doubts worth a person's time, in words.
 std::vector<std::string> find_doubts(const experiment::Experiment& experiment,
                                      const maps::FoundPlace& place,

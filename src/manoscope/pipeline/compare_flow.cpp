@@ -113,7 +113,8 @@ void apply_model(const experiment::Experiment& experiment, const FlowKnowledge& 
   }
   if (section) {
     const ThinnedRun thin(knowledge, run, reading, *section);
-    if (forward) {
+    // A pressure that rises along the flow is told as a doubt; it has no flow rate.
+    if (forward && reading.pressure[section->first] > reading.pressure[section->last]) {
       found.flow_rate = attempt("flow rate from the deflection", found.failures, [&] {
         return validation::infer_flow_rate(setup, model, thin.state, thin.reading, thin.section);
       });

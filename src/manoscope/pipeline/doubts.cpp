@@ -7,7 +7,6 @@
 
 #include "manoscope/core/flags.hpp"
 #include "manoscope/experiment/file_doubts.hpp"
-#include "manoscope/flow/one_dimensional.hpp"
 #include "manoscope/pipeline/assemble.hpp"
 #include "manoscope/pipeline/file_warnings.hpp"
 
@@ -323,49 +322,6 @@ void doubt_inputs(const experiment::Experiment& experiment, const ReducedExperim
   }
 }
 
-/// Pressure that the fluid's gain of speed takes over the test section, Pa, which QR leaves out; 0
-/// where it cannot be told.
-double acceleration(const experiment::Experiment& experiment, const FlowRun& run,
-                    const RunFindings& found) {
-  const Array1& zeta = run.profile.zeta;
-  if (!found.section || found.section->last >= zeta.size()) return 0.0;
-  const flow::Channel channel = channel_of(experiment);
-  const Length start = Length::from_si(zeta[found.section->first]);
-  const Length end = Length::from_si(zeta[found.section->last]);
-  if (!(channel.height + std::min(start, end) > Length{})) return 0.0;
-  return flow::acceleration_drop(channel, fluid_of(experiment), run.flow_rate, start, end).si();
-}
-
-void doubt_agreement(const experiment::Experiment& experiment, const FlowRun& run,
-                     const RunFindings& found, Words& doubts) {
-  // Ten standard uncertainties, beyond what inertia explains: 1.5 times the momentum of a parabola
-  // leaves room for the flow's development behind the inlet.
-  constexpr double kFarApart = 5.0, kRoom = 1.5;
-  if (!found.no_comparison.empty()) {
-    doubts.push_back(
-        fmt::format("Run {}: no hydraulic resistance, for the {}", run.name, found.no_comparison));
-  }
-  if (!found.agreement) return;
-  const double extracted = found.agreement->extracted.value;
-  if (run.flow_rate > FlowRate{} && extracted < 0.0) {
-    doubts.push_back(
-        fmt::format("Run {}: the pressure rises by {:.0f} Pa along the flow: "
-                    "channel.flow points the wrong way, or the maps are mixed up",
-                    run.name, -extracted));
-    return;
-  }
-  const double apart = std::abs(extracted - found.agreement->resistance.value);
-  const double explained = kRoom * std::abs(acceleration(experiment, run, found));
-  const double unexplained = apart > explained ? 1.0 - explained / apart : 0.0;
-  if (std::isgreater(unexplained * found.agreement->en_number, kFarApart)) {
-    doubts.push_back(fmt::format(
-        "Run {}: dp_e = {:.4g} Pa and QR = {:.4g} Pa are {:.0f} times their expanded uncertainty "
-        "apart: check the units of pressures and flow rates, channel.height, the viscosity, and "
-        "that the map belongs to the run",
-        run.name, extracted, found.agreement->resistance.value, found.agreement->en_number));
-  }
-}
-
 }  // namespace
 
 Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPlace& place,
@@ -389,7 +345,9 @@ Words find_doubts(const experiment::Experiment& experiment, const maps::FoundPla
   doubt_inputs(experiment, reduced, doubts);
   for (std::size_t r = 0; r < runs.size(); ++r) {
     doubt_run(runs[r], findings[r], doubts);
-    doubt_agreement(experiment, runs[r], findings[r], doubts);
+    for (const std::string& doubt : doubt_flow(experiment, runs[r], findings[r])) {
+      doubts.push_back(doubt);
+    }
   }
   return doubts;
 }

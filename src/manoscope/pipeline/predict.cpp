@@ -107,6 +107,15 @@ std::string outlet_words(const PredictOptions& options, bool from_runs) {
   return from_runs ? "as the runs have it" : "0 Pa behind it, since no run tells it";
 }
 
+validation::Outlet outlet_at(const Experiment& experiment, const PredictOptions& options,
+                             const FromRuns& runs, FlowRate flow_rate) {
+  validation::Outlet outlet =
+      runs.outlet ? runs.outlet->at(flow_rate) : behind_passage(experiment, flow_rate, Pressure{});
+  if (options.outlet_pressure) outlet = {*options.outlet_pressure, {}};
+  if (options.outlet_uncertainty) outlet.uncertainty = *options.outlet_uncertainty;
+  return outlet;
+}
+
 std::vector<std::string> exact_inputs(const Experiment& experiment) {
   std::vector<std::string> names;
   if (!experiment.channel.height_uncertainty) names.push_back("the gap (channel.height)");
@@ -156,15 +165,14 @@ Predictions predict(const Experiment& experiment, const std::vector<FlowRate>& f
   parallel_for(static_cast<Index>(flow_rates.size()), n_threads, [&](Index i) {
     monitor.checkpoint();
     const FlowRate flow_rate = flow_rates[static_cast<std::size_t>(i)];
-    validation::Outlet outlet = runs.outlet ? runs.outlet->at(flow_rate)
-                                            : behind_passage(experiment, flow_rate, Pressure{});
-    if (options.outlet_pressure) outlet = {*options.outlet_pressure, {}};
-    if (options.outlet_uncertainty) outlet.uncertainty = *options.outlet_uncertainty;
     validation::FlowSetup setup = known.setup;
     setup.inlet_spread = inlet_spread(experiment, flow_rate);
     result.flows[static_cast<std::size_t>(i)] = validation::predict_flow(
-        known.curves, setup, runs.chosen.model, flow_rate, outlet, gauge_of(experiment), coupling);
+        known.curves, setup, runs.chosen.model, flow_rate,
+        [&](FlowRate at) { return outlet_at(experiment, options, runs, at); }, gauge_of(experiment),
+        coupling);
   });
+  for (const auto& flow : result.flows) result.doubts.push_back(doubt_prediction(flow));
   return result;
 }
 

@@ -39,7 +39,12 @@ struct Predictions {
   std::string model;                              ///< why that flow model, in words
   /// Inputs whose uncertainty the experiment does not state, in words: U leaves them out.
   std::vector<std::string> taken_as_exact;
+  std::vector<std::string> doubts;  ///< doubt_prediction() of each flow
 };
+
+/// Where U (k = 2) of a predicted drop is more than a quarter of it: which source most of it comes
+/// from and what would mend that, in words; else empty.
+std::string doubt_prediction(const validation::FlowPrediction& flow);
 
 /// Predicts flow rates from the calibration of an experiment. Its flow runs serve to place the
 /// channel, to choose the flow model (choose_model()) and, where it is not given, for the pressure

@@ -75,8 +75,10 @@ void store_comparison(const validation::ModelComparison& comparison, Index r,
   for (const validation::ModelAgreement& one : comparison.models) {
     const Index f = row_of(checks.flow_model, std::string(flow::flow_model_info(one.model).name));
     checks.model_drop(f, r) = one.drop.value;
-    checks.model_drop_uncertainty(f, r) = one.drop.standard_uncertainty();
-    checks.model_difference_uncertainty(f, r) = one.uncertainty;
+    if (std::isfinite(one.drop.value)) {  // a march that broke down has no drop, and no bar
+      checks.model_drop_uncertainty(f, r) = one.drop.standard_uncertainty();
+      checks.model_difference_uncertainty(f, r) = one.uncertainty;
+    }
     checks.model_en_number(f, r) = one.en_number;
     checks.model_stated_error(f, r) = one.error.half_width;
     if (one.agreement != validation::Agreement::no_verdict) {
@@ -92,7 +94,7 @@ void store_comparison(const validation::ModelComparison& comparison, Index r,
     const Index k = row_of(checks.correction, one.name);
     checks.correction_drop(k, r) = one.section.si();
     checks.correction_channel_drop(k, r) = one.channel.si();
-    checks.correction_uncertainty(k, r) = one.spread.si();
+    if (one.spread) checks.correction_uncertainty(k, r) = one.spread->si();
   }
   checks.reduced_reynolds[r] = comparison.reduced_reynolds;
   checks.local_reynolds.row(r) = between(comparison.line.x, comparison.reynolds, x);

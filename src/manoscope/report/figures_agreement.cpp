@@ -150,7 +150,9 @@ std::optional<Figure> drop_agreement(const Measurement& m) {
       "Left: pressure drop QR that the flow should have in the measured gap of the test section, "
       "against the drop Δp_e read off the wall; the line is QR = Δp_e. Right: their relative "
       "difference. Bars: expanded uncertainties; those of QR on the right take both as "
-      "independent, while the E_n number of the table knows their correlation." +
+      "independent, while the E_n number of the table knows their correlation. Both take eq. (4) "
+      "as "
+      "exact: what it is off by itself is not in them." +
           model_words + " As fig. 4 of Ozsun et al. (2013).",
       900,
       440,

@@ -10,6 +10,7 @@
 #include "manoscope/report/figures.hpp"
 #include "manoscope/report/flow_verdict.hpp"
 #include "manoscope/report/plot_script.hpp"
+#include "manoscope/report/wording.hpp"
 
 namespace manoscope::report {
 namespace {
@@ -55,7 +56,7 @@ std::vector<Index> shown_runs(const Measurement& m) {
 
 /// What the corrections of a run come to, and the bar of the reading against it; % of dp_e.
 struct Balance {
-  double sum = 0.0;      // of the corrections behind the first
+  double sum = 0.0;      // of the corrections behind the first; NaN where the march broke down
   double reading = 0.0;  // dp_e less the first
   double bar = 0.0;      // expanded, of model less reading; of the reading where that is not known
 };
@@ -70,6 +71,7 @@ Balance balance_of(const Measurement& m, Index run) {
     balance.sum += percent * m.correction_drop(k, run);
     last = k;
   }
+  if (march_broke_down(m, run)) balance.sum = std::nan("");
   const Index model =
       flow_model_row(m, effect_of(m.correction[static_cast<std::size_t>(last)]).model);
   double u = model < 0 ? std::nan("") : m.model_difference_uncertainty(model, run);
@@ -162,7 +164,8 @@ std::optional<Figure> flow_corrections(const Measurement& m) {
       "differs from eq. (4), with the expanded "
       "uncertainty of the difference from all effects: where the bar meets the height of the "
       "diamond the drop agrees. Large bars that cancel are a drop that is right for the wrong "
-      "reason. Runs whose drop is smaller than its bar are left out.",
+      "reason. Runs whose drop is smaller than its bar are left out." +
+          broken_marches_text(m),
       640,
       480,
       script.text()};

@@ -97,6 +97,17 @@ std::string axis_around(const char* axis, const std::vector<Array1>& lists, doub
                      : logarithmic_axis(axis, low / 1.4 / scale, 1.4 * high / scale);
 }
 
+/// Whether the fits weight every drop by its own size: not all have an uncertainty.
+bool fitted_by_size(const Measurement& m) {
+  const bool compliant = m.compliant_drop.isFinite().any();
+  const Array1& drop = compliant ? m.compliant_drop : m.transducer_drop;
+  const Array1& bar = compliant ? m.compliant_drop_uncertainty : m.transducer_drop_uncertainty;
+  for (Index run = 0; run < drop.size(); ++run) {
+    if (std::isfinite(drop(run)) && !std::isgreater(bar(run), 0.0)) return true;
+  }
+  return false;
+}
+
 /// Fit and exponent with their bars, as sentences of the caption; "" without a fit.
 std::string fit_words(const Measurement& m, const ReportUnits& units) {
   std::string words;
@@ -105,7 +116,7 @@ std::string fit_words(const Measurement& m, const ReportUnits& units) {
   if (std::isfinite(m.drop_fit_linear)) {
     words += fmt::format(
         " Fit to the drops {}: aQ + bQ² with a = {} {}/({}), b = {} {}/({})²: b "
-        "is positive where inertia counts, negative where the wall gives way.",
+        "is positive where inertia counts, negative where the wall gives way.{}",
         m.compliant_drop.isFinite().any() ? "of the whole channel"
                                           : "of the transducer, passages included",
         number_text_with_uncertainty(m.drop_fit_linear / linear,
@@ -113,7 +124,9 @@ std::string fit_words(const Measurement& m, const ReportUnits& units) {
         units.drop.name, units.flow_rate.name,
         number_text_with_uncertainty(m.drop_fit_quadratic / quadratic,
                                      kExpansion * m.drop_fit_quadratic_uncertainty / quadratic),
-        units.drop.name, units.flow_rate.name);
+        units.drop.name, units.flow_rate.name,
+        fitted_by_size(m) ? " Every drop counts by its own size, since no noise is stated for it."
+                          : "");
   }
   if (std::isfinite(m.drop_fit_exponent)) {
     words += fmt::format(" As a power of Q they go with exponent n = {} (1: a rigid channel).",
@@ -159,7 +172,8 @@ std::optional<Figure> pressure_drop(const Measurement& m) {
           "the same section. Red: what the transducer gives for the whole channel, beside QR of "
           "the whole channel (dotted).{}{} As fig. 2(a) of Ozsun et al. (2013).",
           predicted ? " Green squares: predicted from the calibration and the flow rate, without "
-                      "the map under flow."
+                      "the map under flow; but where no outlet gauge is told, the pressure at the "
+                      "outlet is taken from the reading of that very map."
                     : "",
           fit_words(m, units)),
       900,

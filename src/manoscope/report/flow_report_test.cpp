@@ -135,6 +135,43 @@ TEST(FlowFigures, StackWhatAddsAboveWhatTakesBelowZero) {
   EXPECT_TRUE(holds(script, fmt::format("1.24 -1 {:.6g}\n", bar))) << script;
 }
 
+TEST(FlowFigures, DrawNoTotalWhereTheMarchBrokeDown) {
+  Measurement m = example(2);
+  m.run = {"Q44", "Q50"};
+  m.model_drop(3, 1) = m.correction_drop(4, 1) = kNan;
+  const auto figure = flow_corrections(m);
+  EXPECT_TRUE(holds(figure->script, "1.88 NaN")) << figure->script;
+  EXPECT_FALSE(holds(figure->script, "0.88 NaN"));
+  const std::string words = "The section march broke down in Q50: no total of all effects there.";
+  EXPECT_TRUE(holds(figure->caption, words)) << figure->caption;
+  EXPECT_FALSE(holds(flow_corrections(example(2))->caption, "broke down"));
+  const std::string part = flow_part(m);
+  EXPECT_TRUE(holds(part, words));
+  EXPECT_TRUE(holds(part, "<td>–</td><td>–</td>")) << part;  // neither march nor total
+}
+
+TEST(FlowFigures, KeepTheTotalOfAFlowThatRunsBackwards) {
+  Measurement m = example(2);  // its models do not march, and nothing broke down
+  m.flow_rate(1) *= -1.0;
+  m.model_drop(3, 1) = m.correction_drop(4, 1) = kNan;
+  EXPECT_FALSE(holds(flow_corrections(m)->caption, "broke down"));
+}
+
+TEST(FlowFigures, SayThatAPredictionMayKnowTheMapByItsOutlet) {
+  const Measurement m = example();
+  const std::string words = "is taken from the reading of that very map";
+  EXPECT_TRUE(holds(pressure_drop(m)->caption, words));
+  EXPECT_TRUE(holds(channel_drops_table(m), words));
+}
+
+TEST(FlowFigures, SayHowTheFitWeightsTheDrops) {
+  Measurement m = example();
+  const std::string words = "Every drop counts by its own size";
+  EXPECT_FALSE(holds(pressure_drop(m)->caption, words));
+  m.compliant_drop_uncertainty(0) = 0.0;
+  EXPECT_TRUE(holds(pressure_drop(m)->caption, words));
+}
+
 TEST(FlowFigures, DrawTheOtherModelsAgainstTheOneOfTheVerdict) {
   Measurement m = example(1);
   const std::string script = pressure_at_highest_flow(m)->script;

@@ -20,6 +20,12 @@ FlowVerdict flow_verdict(const results::Measurement& m, Index model, Index run) 
   return flow_verdict(m.model_en_number(model, run), m.model_p_value(model, run));
 }
 
+bool march_broke_down(const results::Measurement& m, Index run) {
+  const Index march = flow_model_row(m, "section-march"), paper = flow_model_row(m, "paper");
+  return march >= 0 && paper >= 0 && m.flow_rate(run) > 0.0 &&
+         std::isfinite(m.model_drop(paper, run)) && !std::isfinite(m.model_drop(march, run));
+}
+
 const char* verdict_word(FlowVerdict verdict) {
   switch (verdict) {
     case FlowVerdict::agrees:

@@ -29,6 +29,9 @@ FlowVerdict flow_verdict(double en_number, double p_value);
 /// Of model `model` (row of flow_model) and a run; `none` for a row that is not there (-1).
 FlowVerdict flow_verdict(const results::Measurement& measurement, Index model, Index run);
 
+/// Whether the section march has no drop for a run that the other models have one for.
+bool march_broke_down(const results::Measurement& measurement, Index run);
+
 /// "agrees", "only the drop", "differs", "no verdict".
 const char* verdict_word(FlowVerdict verdict);
 

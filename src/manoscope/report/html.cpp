@@ -31,13 +31,15 @@ std::string agreement_sentence(const Measurement& m) {
     n_agree += m.en_number(run) <= 1.0 ? 1 : 0;
   }
   if (n_judged == 0) {
-    return "<p>No run could be judged against the flow: a drop or its uncertainty is "
-           "missing.</p>\n";
+    const bool no_gap = !std::isgreater(m.channel_height_uncertainty, 0.0);
+    return fmt::format("<p>No run could be judged against the flow: {} is missing.</p>\n",
+                       no_gap ? "the uncertainty of the gap (channel.height_uncertainty)"
+                              : "a drop or its uncertainty");
   }
   return fmt::format(
-      "<p>In {} of {} runs the pressure drop read off the wall agrees with the hydraulic "
-      "resistance of "
-      "the measured gap, within the expanded uncertainty of their difference.</p>\n",
+      "<p>In {} of {} runs the pressure drop read off the wall lies within the expanded "
+      "uncertainty "
+      "of <i>QR</i> of the measured gap, the paper's eq. (4) taken as exact.</p>\n",
       n_agree, n_judged);
 }
 

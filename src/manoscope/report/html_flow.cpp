@@ -12,6 +12,7 @@
 #include "manoscope/report/html_simulation.hpp"
 #include "manoscope/report/html_text.hpp"
 #include "manoscope/report/number_text.hpp"
+#include "manoscope/report/wording.hpp"
 
 namespace manoscope::report {
 namespace {
@@ -59,7 +60,8 @@ std::string models_table(const Measurement& m) {
       fmt::format(
           "Which flow model agrees? The model's drop over the test section less Δp<sub>e</sub>, in "
           "% of Δp<sub>e</sub>; E<sub>n</sub>: that difference over its expanded uncertainty (k = "
-          "{:.0f}), in which what reading and model share counts once; p: how often chance puts "
+          "{:.0f}), in which what reading and model share counts once, and which holds the stated "
+          "error of the model; p: how often chance puts "
           "p(x) as far from the model along x. <span class=\"good\">Agrees</span>: E<sub>n</sub> ≤ "
           "1 and p ≥ {:g}. <span class=\"half\">Only the drop</span>: E<sub>n</sub> ≤ 1, but p(x) "
           "does not fit: errors that cancel look like this. <span class=\"bad\">Differs</span>: "
@@ -122,7 +124,7 @@ std::string corrections_table(const Measurement& m) {
       const double part = m.correction_drop(effect, run);
       sum += std::isfinite(part) ? part : 0.0;
     }
-    const bool any = m.correction_drop.col(run).isFinite().any();
+    const bool any = m.correction_drop.col(run).isFinite().any() && !march_broke_down(m, run);
     body += cell(any ? pascal_text(m, run, sum) : "–") +
             cell(number_text_with_uncertainty(m.extracted_drop(run),
                                               kExpansion * m.extracted_drop_uncertainty(run))) +
@@ -134,8 +136,8 @@ std::string corrections_table(const Measurement& m) {
           "and in % of Δp<sub>e</sub>. Mean-gap rectangle: the paper's eq. (4). True section: the "
           "roof is curved across. Inertia: the flow slows down where the wall bulges, with the "
           "profiles of developed flow. Entry: development from a uniform profile, ± what an "
-          "unknown inlet profile leaves (k = {:.0f}). Section march: the profiles as they are.",
-          kExpansion),
+          "unknown inlet profile leaves (k = {:.0f}). Section march: the profiles as they are.{}",
+          kExpansion, escape_html(broken_marches_text(m))),
       head, body, m.run.size() > 10);
 }
 

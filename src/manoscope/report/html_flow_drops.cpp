@@ -103,8 +103,9 @@ std::string channel_drops_table(const Measurement& m) {
   }
   std::string words = fmt::format(
       "Drop between the ends of the channel ± expanded uncertainty (k = {:.0f}). Predicted: from "
-      "the calibration and the set flow rate by {}, without the map under flow; where no outlet "
-      "gauge is told, the pressure at the outlet is that of the reading.",
+      "the calibration and the set flow rate by {}, without the map under flow; but where no "
+      "outlet gauge is told, the pressure at the outlet is taken from the reading of that very "
+      "map.",
       kExpansion,
       m.verdict_model.empty() ? std::string("the flow model") : escape_html(m.verdict_model));
   words +=

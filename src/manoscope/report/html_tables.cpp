@@ -60,9 +60,8 @@ std::string count(Index n, const char* one, const char* many) {
 }
 
 std::string verdict(double en_number) {
-  if (!std::isfinite(en_number)) return "<span class=\"none\">no verdict</span>";
-  return en_number <= 1.0 ? "<span class=\"good\">agrees</span>"
-                          : "<span class=\"bad\">disagrees</span>";
+  const char* const style = !std::isfinite(en_number) ? "none" : en_number <= 1.0 ? "good" : "bad";
+  return fmt::format("<span class=\"{}\">{}</span>", style, resistance_word(en_number));
 }
 
 /// Fraction of the stations of the test section that have a pressure; NaN without stations.
@@ -155,7 +154,8 @@ std::string runs_table(const Measurement& m) {
       column_head("Run") + column_head(fmt::format("<i>Q</i> ({})", units.flow_rate.name)) +
       column_head("Re") + column_head(fmt::format("Δ<i>p</i><sub>e</sub> ({})", units.drop.name)) +
       column_head(fmt::format("<i>QR</i> ({})", units.drop.name)) +
-      column_head("<i>E</i><sub>n</sub>") + column_head("<i>QR</i> and Δ<i>p</i><sub>e</sub>") +
+      column_head("<i>E</i><sub>n</sub>") +
+      column_head("<i>QR</i> and Δ<i>p</i><sub>e</sub>, eq. (4) as exact") +
       column_head(fmt::format("Transducer ({})", units.drop.name)) +
       column_head(fmt::format("Transducer − parasitic ({})", units.drop.name)) +
       column_head(fmt::format("<i>QR</i>, whole channel ({})", units.drop.name)) +
@@ -164,9 +164,14 @@ std::string runs_table(const Measurement& m) {
       fmt::format(
           "Pressure drops over the test section ± expanded uncertainty (k = {:.0f}, about 95 %). "
           "Δp<sub>e</sub>: read off the wall. QR: flow rate times hydraulic resistance of the "
-          "measured gap by the paper's eq. (4), which leaves out inertia and developing flow: at "
-          "high "
-          "flow rate a disagreement may be the formula's. {} They agree where E<sub>n</sub> ≤ 1. "
+          "measured gap by the paper's eq. (4). {} E<sub>n</sub>: their difference over its "
+          "expanded "
+          "uncertainty, in which the formula counts as exact and its inlet as known: it leaves out "
+          "inertia and developing flow, and “beyond U” (E<sub>n</sub> > 1) may be the formula's. "
+          "The "
+          "verdict on eq. (4), with its stated error and what is not known of the inlet, is that "
+          "of "
+          "the table of flow models. "
           "Read: share of the test section's stations where the wall gives an answer.",
           kExpansion, resistance_uncertainty_text(m)),
       head, body);

@@ -220,11 +220,28 @@ TEST(Report, ShowsADropWithItsExpandedUncertainty) {
   measurement.en_number(0) = 1.7;
   const std::string page = page_of(make_report(measurement));
   EXPECT_NE(page.find("<td>14.23 ± 0.12</td>"), std::string::npos);
-  EXPECT_NE(page.find("disagrees"), std::string::npos);
+  EXPECT_NE(page.find("beyond U"), std::string::npos);
+  // What eq. (4) is off by itself is not in that E_n, and the table says so.
+  EXPECT_NE(page.find("may be the formula's"), std::string::npos);
+  EXPECT_EQ(page.find("disagrees"), std::string::npos);
+}
+
+TEST(Report, GivesNoVerdictOnRunsWhoseGapIsNotKnown) {
+  auto measurement = example_measurement({.n_x = 40, .n_levels = 5, .n_runs = 2});
+  measurement.channel_height_uncertainty = 0.0;
+  measurement.en_number.setConstant(kNan);
+  measurement.model_en_number.setConstant(kNan);
+  const std::string page = page_of(make_report(measurement));
+  EXPECT_NE(page.find("No run could be judged against the flow: the uncertainty of the gap "
+                      "(channel.height_uncertainty) is missing"),
+            std::string::npos);
+  EXPECT_NE(page.find("it leaves out the gap, whose uncertainty is not stated"), std::string::npos);
+  EXPECT_EQ(page.find("U(QR) holds gap"), std::string::npos);
 }
 
 TEST(ResistanceUncertaintyText, SaysWhatCountsAsExact) {
   results::Measurement m;
+  m.channel_height_uncertainty = 0.5e-6;
   m.flow_rate_uncertainty = Array1::Zero(2);
   const auto says = [&](const std::string& part) {
     EXPECT_NE(resistance_uncertainty_text(m).find(part), std::string::npos)

@@ -22,7 +22,7 @@ struct FlowChecks {
   Array1 channel_resistance_drop;                       ///< (n_r) Pa, Q R over the whole channel
   Array2 resistance_pressure;  ///< (n_r, n_x) Pa: p(x_end) + Q int_x^x_end r
   Array1 reynolds;             ///< (n_r)
-  Array1 en_number;            ///< (n_r) |dp_e - QR| / U of the difference
+  Array1 en_number;            ///< (n_r) |dp_e - QR| / U of the difference, eq. (4) as exact
 
   // Every flow model against the reading, over the test section.
   std::string flow_setup;               ///< section and inlet that the models take, in words
@@ -41,7 +41,8 @@ struct FlowChecks {
   std::vector<std::string> correction;  ///< (n_k)
   Array2 correction_drop;               ///< (n_k, n_r) Pa, over the test section
   Array2 correction_channel_drop;       ///< (n_k, n_r) Pa, over the whole channel
-  Array2 correction_uncertainty;        ///< (n_k, n_r) Pa, standard, that the inlet profile leaves
+  Array2 correction_uncertainty;  ///< (n_k, n_r) Pa, standard, that the inlet profile leaves: entry
+                                  ///< alone
 
   // The flow along the channel.
   Array1 reduced_reynolds;                   ///< (n_r) Re h/l

@@ -63,7 +63,9 @@ std::vector<Variable> flow_variables() {
       {"en_number",
        {"run"},
        "1",
-       "extracted minus resistance drop over the expanded uncertainty of the difference, absolute",
+       "extracted minus resistance drop over the expanded uncertainty of the difference, absolute; "
+       "eq. (4) taken as exact and its inlet as known; missing where the gap has no stated "
+       "uncertainty",
        &M::en_number},
       {"flow_model",
        {"flow_model"},
@@ -96,7 +98,8 @@ std::vector<Variable> flow_variables() {
        {"flow_model", "run"},
        "1",
        "model minus extracted drop over the expanded uncertainty of the difference, absolute; "
-       "missing where there is no verdict",
+       "stated "
+       "error of the model and inlet profile in it; missing where there is no verdict",
        &M::model_en_number},
       {"model_chi_square",
        {"flow_model", "run"},
@@ -144,7 +147,7 @@ std::vector<Variable> flow_variables() {
        {"correction", "run"},
        "Pa",
        "standard uncertainty of that over the test section which the unknown inlet profile leaves, "
-       "k = 1",
+       "k = 1; of entry alone, missing elsewhere",
        &M::correction_uncertainty},
       {"reduced_reynolds",
        {"run"},

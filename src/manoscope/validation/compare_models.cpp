@@ -169,22 +169,23 @@ std::vector<Correction> corrections(const Comparison& comparison, const FlowSetu
                                     FlowRate flow_rate, const std::vector<ModelAgreement>& models) {
   std::vector<Correction> terms;
   Array1 before = Array1::Zero(comparison.line().x.size());
-  const auto add = [&](const char* name, const Array1& pressure, double spread) {
+  const auto add = [&](const char* name, const Array1& pressure,
+                       std::optional<double> spread = std::nullopt) {
     const Array1 part = pressure - before;
     terms.push_back({name, Pressure::from_si(comparison.section_drop(part)),
                      Pressure::from_si(part[0] - part[part.size() - 1]),
-                     Pressure::from_si(spread)});
+                     spread ? std::optional(Pressure::from_si(*spread)) : std::nullopt});
     before = pressure;
   };
-  add("mean-gap rectangle", comparison.pressure(flow::FlowModel::paper), 0.0);
-  add("true section", comparison.pressure(flow::FlowModel::creeping), 0.0);
-  add("inertia", comparison.pressure(flow::FlowModel::momentum), 0.0);
+  add("mean-gap rectangle", comparison.pressure(flow::FlowModel::paper));
+  add("true section", comparison.pressure(flow::FlowModel::creeping));
+  add("inertia", comparison.pressure(flow::FlowModel::momentum));
   if (!(flow_rate.si() > 0.0)) return terms;
   const bool uniform = setup.inlet == flow::InletProfile::uniform;
   add("entry", uniform ? comparison.pressure(flow::FlowModel::developing) : before,
       comparison.spread());
   for (const ModelAgreement& found : models) {
-    if (found.model == flow::FlowModel::section_march) add("section march", found.pressure, 0.0);
+    if (found.model == flow::FlowModel::section_march) add("section march", found.pressure);
   }
   return terms;
 }

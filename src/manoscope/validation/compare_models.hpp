@@ -72,7 +72,8 @@ struct Correction {
   std::string name;
   Pressure section{};  ///< over the test section
   Pressure channel{};  ///< over the whole channel
-  Pressure spread{};   ///< standard uncertainty over the section that the inlet profile leaves
+  /// Standard uncertainty over the section that the inlet profile leaves; "entry" alone has one.
+  std::optional<Pressure> spread;
 };
 
 /// Flow models against the reading of one run.

@@ -133,6 +133,9 @@ TEST(CompareModels, SplitsTheDropIntoCorrectionsThatAddUp) {
   EXPECT_GT(found.corrections[2].section.si(), 0.0);
   EXPECT_EQ(found.corrections[3].section, Pressure{});  // developed inlet: no entry
   EXPECT_EQ(found.corrections[3].spread, Pressure{});   // and known to be so
+  for (const int k : {0, 1, 2, 4}) {
+    EXPECT_FALSE(found.corrections[static_cast<std::size_t>(k)].spread);  // none is formed
+  }
 }
 
 TEST(CompareModels, CallsTheModelTrueThatIsAndTellsThatCreepingFlowIsNotValid) {

@@ -67,12 +67,16 @@ TwoParameters solve(const Matrix& rows, const Eigen::VectorXd& right, bool has_w
 QuadraticFit fit_quadratic(const std::vector<DropPoint>& points) {
   const double scale = checked_scale(points);
   const bool has_weights = weighted(points);
+  const bool relative = std::none_of(points.begin(), points.end(), [](const DropPoint& point) {
+    return point.drop == Pressure{};
+  });
   const auto n = static_cast<Index>(points.size());
   Matrix rows(n, 2);
   Eigen::VectorXd right(n);
   for (Index i = 0; i < n; ++i) {
     const DropPoint& point = points[static_cast<std::size_t>(i)];
-    const double weight = has_weights ? 1.0 / point.uncertainty.si() : 1.0;
+    const double weight = has_weights ? 1.0 / point.uncertainty.si()
+                                      : (relative ? 1.0 / std::abs(point.drop.si()) : 1.0);
     const double q = point.flow_rate.si() / scale;
     rows(i, 0) = weight * q;
     rows(i, 1) = weight * q * q;

@@ -11,7 +11,7 @@ namespace manoscope::validation {
 struct DropPoint {
   FlowRate flow_rate{};
   Pressure drop{};
-  Pressure uncertainty{};  ///< standard, of this point alone; 0 at every point = equal weights
+  Pressure uncertainty{};  ///< standard, of this point alone; 0 = not known
 };
 
 /// dp = a Q + b Q^2.
@@ -33,8 +33,10 @@ struct PowerFit {
 /// Fits to dp_t(Q) (fig. 2(a) of Ozsun, Yakhot & Ekinci (2013), where channels whose wall yields
 /// bend down from the straight line of a rigid one).
 ///
-/// Weighted least squares in closed form; for the power law the logarithms, weights dp/u. Without
-/// uncertainties those of the parameters come from the scatter of the points. An error that all
+/// Weighted least squares in closed form; for the power law the logarithms, weights dp/u. Where the
+/// uncertainty of a point is not known every point counts by its own size, 1/|dp| (alike if one is
+/// 0), so that a small drop is met as well as a large one, and the uncertainties of the parameters
+/// come from the scatter of the points. An error that all
 /// points share (gap, viscosity, pump) scales a, b and C alike and is not in them; n does not feel
 /// it.
 /// @throws InputError for fewer than two flow rates, or for a flow rate that is not positive; the

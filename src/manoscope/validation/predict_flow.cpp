@@ -5,309 +5,238 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include "manoscope/core/error.hpp"
-#include "manoscope/flow/channel_resistance.hpp"
-#include "manoscope/flow/section_flow.hpp"
-#include "manoscope/validation/wall_answer.hpp"
+#include "manoscope/validation/flow_coupling.hpp"
 
 namespace manoscope::validation {
 namespace {
 
 constexpr const char* kWhere = "predicted flow";
-constexpr double kMarched = 2e-5;  // of p: far below the error of any march
-constexpr int kMostMarches = 20;   // each is some ten times nearer
 
-bool marches(flow::FlowModel model) {
-  return model == flow::FlowModel::plane_march || model == flow::FlowModel::section_march;
-}
-bool has_inertia(flow::FlowModel model) {
-  return model != flow::FlowModel::paper && model != flow::FlowModel::creeping;
-}
-
-/// G of P = G p, P - L^2 P'' = p with P' = 0 at both ends: linear elements, lumped.
-Matrix spread_matrix(const Array1& x, Length healing_length) {
-  const Index n = x.size();
-  const double square = healing_length.si() * healing_length.si();
-  if (!(square > 0.0)) return Matrix::Identity(n, n);
-  Matrix system = Matrix::Zero(n, n), mass = Matrix::Zero(n, n);
-  for (Index i = 0; i + 1 < n; ++i) {
-    const double step = x[i + 1] - x[i];
-    for (const Index end : {i, i + 1}) {
-      mass(end, end) += 0.5 * step;
-      system(end, end) += 0.5 * step + square / step;
-    }
-    system(i, i + 1) -= square / step;
-    system(i + 1, i) -= square / step;
+void set_flags(FlowPrediction& result, const FlowCoupling& coupling,
+               const flow::ModelledPressure& modelled) {
+  const CurvedWall& wall = coupling.wall();
+  const Array1& p = result.pressure;
+  result.flags = Flags1::Zero(p.size());
+  const Array1 at = coupling.felt(p), slope = coupling.slopes(p);
+  bool doubt = false;
+  for (Index i = p.size(); i-- > 0;) {
+    FlagBits& flags = result.flags[i];
+    if (doubt) flags |= PredictionFlag::downstream_doubt;
+    if (wall.is_outside(i, at[i])) flags |= PredictionFlag::out_of_calibration;
+    if (slope[i] < 0.0) flags |= PredictionFlag::falling_curve;
+    doubt = doubt || flags != 0;
+    if (modelled.flags[i] != 0) flags |= PredictionFlag::separated;
+    if (result.speed_index[i] >= 1.0) flags |= PredictionFlag::nearly_choked;
   }
-  return system.partialPivLu().solve(mass);
 }
 
-class Coupling {
+/// The errors of wall and model in p, zeta and the drop.
+class Propagation {
  public:
-  Coupling(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
-           flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet,
-           const PredictFlowOptions& options)
-      : wall_(curves, setup.channel.length, options.largest_extrapolation),
-        setup_(setup),
-        model_(model),
-        flow_rate_(flow_rate),
-        outlet_(outlet),
-        options_(options) {
-    if (!setup_.tables) {
-      setup_ =
-          with_tables(setup_, Length::from_si(wall_.least()), Length::from_si(wall_.greatest()));
-    }
-    const Length width = setup_.channel.width;
-    spread_ =
-        spread_matrix(wall_.x(), options.healing_length.value_or(width / (2.0 * std::numbers::pi)));
+  Propagation(const FlowCoupling& coupling, const ModelledRun& run, FlowPrediction& result)
+      : coupling_(coupling), run_(run), result_(result), slopes_(coupling.slopes(result.pressure)) {
+    const Index n = result.pressure.size();
+    solver_.compute(Matrix::Identity(n, n) -
+                    run.sensitivity.by_zeta * slopes_.matrix().asDiagonal() * coupling.spread());
+    result.uncertainty.independent = result.zeta_uncertainty.independent = none_ = Array1::Zero(n);
   }
 
-  FlowPrediction solve(const inversion::GaugeErrors& gauge) {
-    FlowPrediction result;
-    result.model = model_;
-    result.flow_rate = flow_rate_;
-    result.x = wall_.x();
-    result.station = wall_.station();
-    Array1 p = start();
-    correction_ = Array1::Zero(wall_.size());
-    settle(p, result.steps);
-    if (marches(model_)) march_on(p, result.steps);
-    refuse_choking(p);
-    refuse_extrapolation(p);
-    finish(result, p, gauge);
-    return result;
+  void add_curves(const inversion::GaugeErrors& gauge) {
+    const Uncertainty errors = coupling_.wall().errors(coupling_.felt(result_.pressure), gauge);
+    for (const ErrorMode& mode : errors.modes) add(mode.variable, mode.source, mode.effect, none_);
+    for (Index i = 0; i < none_.size(); ++i) {
+      Array1 one = none_;
+      one[i] = errors.independent[i];
+      add(fmt::format("noise of the curves at station {}",
+                      coupling_.wall().station()[static_cast<std::size_t>(i)]),
+          "pixel noise", one, none_);
+    }
+  }
+
+  void add_flow(const Outlet& outlet) {
+    const FlowSetup& setup = coupling_.setup();
+    const FlowUncertainty& u = setup.uncertainty;
+    const flow::FlowSensitivity& by = run_.sensitivity;
+    add("channel height", "channel height", none_, u.height.si() * by.by_height);
+    add("viscosity", "viscosity", none_, (u.viscosity / setup.fluid.viscosity) * by.by_viscosity);
+    add("flow rate", "flow rate", none_, u.flow_rate * by.by_flow_rate);
+    add("outlet pressure", "outlet pressure", none_,
+        Array1::Constant(none_.size(), outlet.uncertainty.si()));
+    const Array1 fall = run_.pressure();  // p - p_out
+    const double standard = run_.error.standard();
+    const std::string name(flow::flow_model_info(coupling_.model()).name);
+    add("flow model " + name, "flow model", none_, standard * fall);
+    if (fall[0] != 0.0) {
+      const Array1 share = fall / fall[0];
+      add("flow model " + name + ", bend", "flow model", none_,
+          standard * fall[0] * 4.0 * share * (1.0 - share));
+    }
+    add("inlet profile", "inlet profile", none_, run_.inlet_effect);
   }
 
  private:
-  /// What a march adds to `momentum` changes little with the state: it is taken as it was at the
-  /// last state, until that state meets the march itself.
-  void march_on(Array1& p, int& steps) {
-    for (int k = 0; k < kMostMarches; ++k) {
-      const flow::FlowCase state = flow(p);
-      const Array1 marched = flow::pressure_along(model_, state, *setup_.tables).pressure;
-      if (!marched.isFinite().all()) unsettled(p);
-      if ((marched - p).abs().maxCoeff() <= kMarched * std::max(1.0, p.abs().maxCoeff())) return;
-      correction_ =
-          marched - flow::pressure_along(flow::FlowModel::momentum, state, *setup_.tables).pressure;
-      settle(p, steps);
-    }
-    unsettled(p);
+  void add(const std::string& variable, const std::string& source, const Array1& of_zeta,
+           const Array1& of_model) {
+    if ((of_zeta == 0.0).all() && (of_model == 0.0).all()) return;
+    const Array1 effect =
+        solver_.solve(run_.sensitivity.by_zeta * of_zeta.matrix() + of_model.matrix()).array();
+    result_.uncertainty.modes.push_back({variable, source, effect});
+    result_.zeta_uncertainty.modes.push_back(
+        {variable, source, slopes_ * coupling_.felt(effect) + of_zeta});
   }
 
-  /// Newton's method on p = m(zeta(p)) + correction.
-  void settle(Array1& p, int& steps) const {
-    const Index n = wall_.size();
-    Array1 residual = p - modelled(p);
-    for (int own = 1;; ++own) {
-      ++steps;
-      if (own > options_.most_steps || !residual.isFinite().all()) unsettled(p);
-      const Matrix jacobian = Matrix::Identity(n, n) - coupling(p);
-      const Array1 step = -jacobian.partialPivLu().solve(residual.matrix()).array();
-      const double scale = std::max(1.0, p.abs().maxCoeff());
-      if (!step.isFinite().all()) unsettled(p);
-      // Halve while the residual grows, so that no step leaps over the bend of the curves.
-      double share = 1.0;
-      Array1 next = p + step, after = next - modelled(next);
-      while (share > 1e-3 && !(after.matrix().norm() <= residual.matrix().norm())) {
-        share *= 0.5;
-        next = p + share * step;
-        after = next - modelled(next);
+  const FlowCoupling& coupling_;
+  const ModelledRun& run_;
+  FlowPrediction& result_;
+  Array1 slopes_, none_;
+  Eigen::PartialPivLU<Matrix> solver_;
+};
+
+FlowPrediction told(const FlowCoupling& coupling, const CoupledState& state,
+                    const inversion::GaugeErrors& gauge) {
+  FlowPrediction result;
+  result.model = coupling.model();
+  result.flow_rate = state.flow_rate;
+  result.x = coupling.wall().x();
+  result.station = coupling.wall().station();
+  result.steps = state.steps;
+  result.pressure = state.pressure;
+  const WallLine line = coupling.wall().line(coupling.felt(state.pressure));
+  result.zeta = line.zeta;
+  result.speed_index = coupling.speed_index(state);
+  const ModelledRun run = modelled_run(coupling.model(), coupling.setup(), state.flow_rate, line);
+  result.error = run.error;
+  set_flags(result, coupling, run.sensitivity.modelled);
+  Propagation propagation(coupling, run, result);
+  propagation.add_curves(gauge);
+  propagation.add_flow(state.outlet);
+  const Index last = state.pressure.size() - 1;
+  result.drop.value = state.pressure[0] - state.pressure[last];
+  for (const ErrorMode& mode : result.uncertainty.modes) {
+    result.drop.terms.push_back({mode.variable, mode.source, mode.effect[0] - mode.effect[last]});
+  }
+  return result;
+}
+
+/// The largest number of two digits that is no larger, and the one before it.
+double two_digits(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return std::floor(value / unit * (1.0 + 1e-12)) * unit;
+}
+double one_less(double value) { return two_digits(value * (1.0 - 1e-6)); }
+
+/// The flow rates that have an answer, in the direction of the one asked.
+class Answers {
+ public:
+  Answers(const FlowCoupling& coupling, const OutletAt& outlet, const inversion::GaugeErrors& gauge,
+          FlowRate asked)
+      : coupling_(coupling), outlet_(outlet), gauge_(gauge), asked_(asked) {}
+
+  /// From the state at rest, or by way of lower flow rates.
+  /// @throws InputError that names the largest flow rate with an answer.
+  FlowPrediction find() {
+    CoupledState state = at(asked());
+    if (state.none) {
+      search();
+      state = on_the_way();
+    }
+    if (state.none) refuse();
+    try {
+      return told(coupling_, state, gauge_);
+    } catch (const InputError& error) {
+      if (held_.empty()) search();
+      why_ = {fmt::format("{} {}", error.where(), error.found()), error.mend()};
+    }
+    refuse();
+  }
+
+ private:
+  double asked() const { return std::abs(asked_.si()); }
+  double limit() const { return std::abs(held_.back().flow_rate.si()); }
+
+  CoupledState at(double magnitude, const Array1* start = nullptr) const {
+    const FlowRate flow_rate = FlowRate::from_si(std::copysign(magnitude, asked_.si()));
+    return coupling_.solve(flow_rate, outlet_(flow_rate), start);
+  }
+
+  /// Follows the states up from the scale of the channel, by steps that halve where there is none
+  /// and grow where there is: the limit does not depend on what was asked.
+  void search() {
+    constexpr double kResolved = 1e-3;  // of the flow rate
+    constexpr int kMostHalvings = 20, kMostSteps = 200;
+    double low = coupling_.scale().si();
+    CoupledState state = at(low);
+    for (int k = 0; state.none && k < kMostHalvings; ++k) state = at(low *= 0.5);
+    why_ = state.none.value_or(NoState{});
+    if (state.none) return;
+    held_.push_back(std::move(state));
+    double step = 1.0;
+    for (int k = 0; step > kResolved && k < kMostSteps; ++k) {
+      CoupledState next = at(limit() * (1.0 + step), &held_.back().pressure);
+      step = next.none ? 0.5 * step : std::min(1.0, 1.5 * step);
+      if (next.none) {
+        why_ = *next.none;
+      } else {
+        held_.push_back(std::move(next));
       }
-      p = next;
-      residual = after;
-      if (share == 1.0 && step.abs().maxCoeff() <= options_.tolerance * scale) return;
+    }
+    if (why_.settled) return;
+    why_ = coupling_.on_the_edge(held_.back()).value_or(why_);
+  }
+
+  /// The state asked for from the nearest one below it.
+  CoupledState on_the_way() const {
+    const CoupledState* nearest = nullptr;
+    for (const CoupledState& state : held_) {
+      if (std::abs(state.flow_rate.si()) <= asked()) nearest = &state;
+    }
+    return at(asked(), nearest != nullptr ? &nearest->pressure : nullptr);
+  }
+
+  bool answered(double magnitude) const {
+    const CoupledState state = at(magnitude);
+    if (state.none) return false;
+    try {
+      told(coupling_, state, gauge_);
+      return true;
+    } catch (const InputError&) {
+      return false;
     }
   }
 
-  /// What the wall answers to, P.
-  Array1 felt(const Array1& p) const { return (spread_ * p.matrix()).array(); }
-  flow::FlowCase flow(const Array1& p) const {
-    flow::FlowCase one = flow_case(setup_, flow_rate_, wall_.line(felt(p)));
-    one.outlet_pressure = outlet_.pressure;
-    return one;
-  }
-  /// The model whose derivatives are cheap: its own, or what stands in for a march.
-  flow::FlowModel local() const { return marches(model_) ? flow::FlowModel::momentum : model_; }
-  Array1 modelled(const Array1& p) const {
-    return flow::pressure_along(local(), flow(p), *setup_.tables).pressure + correction_;
-  }
-  Array1 slopes(const Array1& p) const {
-    const Array1 at = felt(p);
-    Array1 result(p.size());
-    for (Index i = 0; i < p.size(); ++i) result[i] = wall_.slope(i, at[i]);
-    return result;
-  }
-  /// dm/dzeta dzeta/dp.
-  Matrix coupling(const Array1& p) const {
-    const Matrix by_zeta = flow::flow_sensitivity(local(), flow(p), *setup_.tables).by_zeta;
-    return by_zeta * slopes(p).matrix().asDiagonal() * spread_;
-  }
-  /// A straight fall from the pressure before the undeflected wall, inside the calibrated range.
-  Array1 start() const {
-    const double out = outlet_.pressure.si();
-    const Array1 flat =
-        flow::pressure_along(flow::FlowModel::paper, flow(Array1::Constant(wall_.size(), out)))
-            .pressure;
-    double highest = flat[0];
-    for (Index i = 0; i < wall_.size(); ++i) highest = std::min(highest, wall_.highest(i));
-    return out + std::max(0.0, highest - out) * (1.0 - wall_.x() / setup_.channel.length.si());
+  /// Two digits, in mL/min: the largest flow rate that is answered, and less than what was asked.
+  double hint() const {
+    constexpr int kMostSteps = 100;
+    const double unit = FlowRate(1.0 * mL_per_min).si();
+    double hint = two_digits(std::min(limit(), asked()) / unit);
+    if (hint * unit >= asked()) hint = one_less(hint);
+    for (int k = 0; k < kMostSteps && !answered(hint * unit); ++k) hint = one_less(hint);
+    return hint;
   }
 
-  Array1 speed_index(const Array1& p) const {
-    Array1 result = Array1::Zero(p.size());
-    if (!has_inertia(model_)) return result;
-    const double width = setup_.channel.width.si();
-    const flow::SectionFamily& family = setup_.tables->family;
-    const double span = setup_.tables->step.si();
-    const Array1 at = felt(p), slope = slopes(p);
-    for (Index i = 0; i < p.size(); ++i) {
-      const double zeta = wall_.zeta(i, at[i]);
-      const auto beta = [&](double deflection) {
-        return family.at(Length::from_si(deflection)).momentum_factor;
-      };
-      result[i] = flow::speed_index(
-          beta(zeta), (beta(zeta + span) - beta(zeta - span)) / (2.0 * span * width), setup_.fluid,
-          flow_rate_, width * (setup_.channel.height.si() + zeta), width * slope[i]);
-    }
-    return result;
-  }
-  /// Means of the speed index over stretches as long as the wall's own response, w/pi: what is
-  /// shorter the wall does not follow.
-  Array1 spread_index(const Array1& p) const {
-    const Array1 local = speed_index(p);
-    const Array1& x = wall_.x();
-    const double half = 0.5 * setup_.channel.width.si() / std::numbers::pi;
-    Array1 result(p.size());
-    for (Index i = 0; i < p.size(); ++i) {
-      const double from = std::max(0.0, x[i] - half), to = std::min(x[p.size() - 1], x[i] + half);
-      const Array1 weights = flow::interval_weights(x, Length::from_si(from), Length::from_si(to));
-      result[i] = (weights * local).sum() / (to - from);
-    }
-    return result;
-  }
-  void refuse_choking(const Array1& p) const {
-    if (!has_inertia(model_)) return;
-    Index place = 0;
-    const double greatest = spread_index(p).maxCoeff(&place);
-    if (greatest < 1.0) return;
-    throw InputError(
-        kWhere,
-        fmt::format("the flow chokes about x = {:.4g} mm: its speed index S^2 is {:.3g} at {:.4g} "
-                    "mL/min",
-                    wall_.x()[place] * 1e3, greatest, flow_rate_.in(mL_per_min)),
-        fmt::format("Such a state cannot be steady. Check the curves and the units, or give less "
-                    "than about {:.4g} mL/min",
-                    flow_rate_.in(mL_per_min) / std::sqrt(greatest)));
-  }
-  void refuse_extrapolation(const Array1& p) const {
-    const Array1 at = felt(p);
-    for (Index i = 0; i < p.size(); ++i) {
-      if (wall_.beyond(i, at[i]) == 0.0) continue;
-      const bool above = at[i] > wall_.highest(i);
-      throw InputError(
-          kWhere,
-          fmt::format("at {:.4g} mL/min the pressure at x = {:.4g} mm would be {:.4g} kPa, where "
-                      "the calibration ends at {:.4g} kPa",
-                      flow_rate_.in(mL_per_min), wall_.x()[i] * 1e3, at[i] * 1e-3,
-                      (above ? wall_.highest(i) : wall_.lowest(i)) * 1e-3),
-          above
-              ? fmt::format("Calibrate to a higher pressure, or give less than about {:.3g} mL/min",
-                            flow_rate_.in(mL_per_min)*wall_.highest(i) / at[i])
-              : std::string("Calibrate to a lower pressure, or give a higher outlet pressure"));
-    }
-  }
-  [[noreturn]] void unsettled(const Array1& p) const {
-    if (p.isFinite().all()) {
-      refuse_choking(p);
-      refuse_extrapolation(p);
-    }
-    throw InputError(kWhere,
-                     fmt::format("no steady state was found at {:.4g} mL/min by the model \"{}\"",
-                                 flow_rate_.in(mL_per_min), flow::flow_model_info(model_).name),
-                     "Give a lower flow rate, or another flow model");
-  }
-
-  void finish(FlowPrediction& result, const Array1& p, const inversion::GaugeErrors& gauge) const {
-    const Index n = p.size();
-    result.pressure = p;
-    result.zeta = flow(p).zeta;
-    result.speed_index = speed_index(p);
-    const ModelledRun run = modelled_run(model_, setup_, flow_rate_, wall_.line(felt(p)));
-    result.error = run.error;
-    set_flags(result, p, run.sensitivity.modelled);
-
-    const Array1 s = slopes(p);
-    const Matrix jacobian =
-        Matrix::Identity(n, n) - run.sensitivity.by_zeta * s.matrix().asDiagonal() * spread_;
-    const Eigen::PartialPivLU<Matrix> solver(jacobian);
-    result.uncertainty.independent = result.zeta_uncertainty.independent = Array1::Zero(n);
-    const auto add = [&](const std::string& variable, const std::string& source,
-                         const Array1& of_zeta, const Array1& of_model) {
-      if ((of_zeta == 0.0).all() && (of_model == 0.0).all()) return;
-      const Array1 effect =
-          solver.solve(run.sensitivity.by_zeta * of_zeta.matrix() + of_model.matrix()).array();
-      result.uncertainty.modes.push_back({variable, source, effect});
-      result.zeta_uncertainty.modes.push_back({variable, source, s * felt(effect) + of_zeta});
+  [[noreturn]] void refuse() const {
+    const auto advise = [&](const std::string& advice) {
+      return why_.mend.empty() ? "Give " + advice : why_.mend + ", or give " + advice;
     };
-    const Array1 none = Array1::Zero(n);
-    const Uncertainty errors = wall_.errors(felt(p), gauge);
-    for (const ErrorMode& mode : errors.modes) add(mode.variable, mode.source, mode.effect, none);
-    for (Index i = 0; i < n; ++i) {
-      Array1 one = none;
-      one[i] = errors.independent[i];
-      add(fmt::format("noise of the curves at station {}",
-                      wall_.station()[static_cast<std::size_t>(i)]),
-          "pixel noise", one, none);
+    const std::string here = fmt::format("has no answer at {:g} mL/min", asked_.in(mL_per_min));
+    if (held_.empty()) {
+      throw InputError(kWhere, fmt::format("{}, nor at any lower flow rate: {}", here, why_.why),
+                       advise("another outlet pressure"));
     }
-    const FlowUncertainty& u = setup_.uncertainty;
-    const Array1 fall = run.pressure();  // p - p_out
-    add("channel height", "channel height", none, u.height.si() * run.sensitivity.by_height);
-    add("viscosity", "viscosity", none,
-        (u.viscosity / setup_.fluid.viscosity) * run.sensitivity.by_viscosity);
-    add("flow rate", "flow rate", none, u.flow_rate * run.sensitivity.by_flow_rate);
-    add("outlet pressure", "outlet pressure", none, Array1::Constant(n, outlet_.uncertainty.si()));
-    const std::string name(flow::flow_model_info(model_).name);
-    add("flow model " + name, "flow model", none, run.error.standard() * fall);
-    if (fall[0] != 0.0) {
-      const Array1 share = fall / fall[0];
-      add("flow model " + name + ", bend", "flow model", none,
-          run.error.standard() * fall[0] * 4.0 * share * (1.0 - share));
-    }
-    add("inlet profile", "inlet profile", none, run.inlet_effect);
-    result.drop.value = p[0] - p[n - 1];
-    for (const ErrorMode& mode : result.uncertainty.modes) {
-      result.drop.terms.push_back(
-          {mode.variable, mode.source, mode.effect[0] - mode.effect[n - 1]});
-    }
+    const std::string most = fmt::format("{:g} mL/min", std::copysign(hint(), asked_.si()));
+    throw InputError(kWhere, fmt::format("{}: beyond {} {}", here, most, why_.why),
+                     advise("at most " + most));
   }
 
-  void set_flags(FlowPrediction& result, const Array1& p,
-                 const flow::ModelledPressure& modelled) const {
-    result.flags = Flags1::Zero(p.size());
-    const Array1 at = felt(p), slope = slopes(p);
-    bool doubt = false;
-    for (Index i = p.size(); i-- > 0;) {
-      FlagBits& flags = result.flags[i];
-      if (doubt) flags |= PredictionFlag::downstream_doubt;
-      if (wall_.is_outside(i, at[i])) flags |= PredictionFlag::out_of_calibration;
-      if (slope[i] < 0.0) flags |= PredictionFlag::falling_curve;
-      doubt = doubt || flags != 0;
-      if (modelled.flags[i] != 0) flags |= PredictionFlag::separated;
-      if (result.speed_index[i] >= 1.0) flags |= PredictionFlag::nearly_choked;
-    }
-  }
-
-  CurvedWall wall_;
-  FlowSetup setup_;
-  flow::FlowModel model_;
-  FlowRate flow_rate_;
-  Outlet outlet_;
-  PredictFlowOptions options_;
-  Matrix spread_;      ///< from p to what the wall answers to
-  Array1 correction_;  ///< Pa, of a march to `momentum`
+  const FlowCoupling& coupling_;
+  const OutletAt& outlet_;
+  const inversion::GaugeErrors& gauge_;
+  FlowRate asked_;
+  std::vector<CoupledState> held_;  ///< by flow rate, the last one at the limit
+  NoState why_;                     ///< what ends the answers there
 };
 
 }  // namespace
@@ -327,13 +256,22 @@ void PredictFlowOptions::validate() const {
 }
 
 FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
-                            flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet,
+                            flow::FlowModel model, FlowRate flow_rate, const OutletAt& outlet,
                             const inversion::GaugeErrors& gauge,
                             const PredictFlowOptions& options) {
   options.validate();
   setup.channel.validate(kWhere);
   setup.fluid.validate(kWhere);
-  return Coupling(curves, setup, model, flow_rate, outlet, options).solve(gauge);
+  const FlowCoupling coupling(curves, setup, model, options);
+  return Answers(coupling, outlet, gauge, flow_rate).find();
+}
+
+FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
+                            flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet,
+                            const inversion::GaugeErrors& gauge,
+                            const PredictFlowOptions& options) {
+  return predict_flow(
+      curves, setup, model, flow_rate, [&outlet](FlowRate) { return outlet; }, gauge, options);
 }
 
 }  // namespace manoscope::validation

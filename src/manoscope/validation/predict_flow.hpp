@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "manoscope/calibration/constitutive_curves.hpp"
@@ -54,6 +55,9 @@ struct Outlet {
   Pressure uncertainty{};  ///< standard
 };
 
+/// The pressure at the outlet where it depends on the flow rate.
+using OutletAt = std::function<Outlet(FlowRate)>;
+
 /// State of wall and fluid at a flow rate that was not run. Arrays have shape (n).
 struct FlowPrediction {
   flow::FlowModel model = flow::FlowModel::paper;
@@ -93,10 +97,17 @@ struct FlowPrediction {
 /// one length tells: zeta there is off by some p'' L^2 d zeta/dp, the drop hardly. Between stations
 /// zeta is straight.
 ///
-/// @throws InputError where the flow chokes (models with inertia: the mean of S^2 over w/pi, which
-///         the wall's tension holds together, is 1 or more), saying where and below which flow rate
-///         it would not; where p leaves the calibrated range by more than
-///         largest_extrapolation; where no steady state is found; if no station has a curve.
+/// A flow rate has no answer where the flow chokes (models with inertia: the mean of S^2 over w/pi,
+/// which the wall's tension holds together, is 1 or more), where p leaves the calibrated range by
+/// more than largest_extrapolation, or where no steady state is found. The error then names, to two
+/// digits and rounded down, the largest flow rate that has one, with the outlet pressure of that
+/// flow rate, and what ends the answers there.
+///
+/// @throws InputError for such a flow rate; if no station has a curve.
+FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
+                            flow::FlowModel model, FlowRate flow_rate, const OutletAt& outlet,
+                            const inversion::GaugeErrors& gauge = {},
+                            const PredictFlowOptions& options = {});
 FlowPrediction predict_flow(const calibration::ConstitutiveCurves& curves, const FlowSetup& setup,
                             flow::FlowModel model, FlowRate flow_rate, const Outlet& outlet = {},
                             const inversion::GaugeErrors& gauge = {},

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/validation/test_coupled_trial.hpp"
@@ -17,6 +19,33 @@ FlowPrediction predict(const CoupledTrial& trial, const FlowSetup& setup, FlowMo
                        FlowRate flow_rate) {
   return predict_flow(trial.curves(), setup, model, flow_rate, {trial.outlet, {}},
                       {trial.gain, Pressure::from_si(trial.zero)});
+}
+
+/// The flow rate behind "at most" in the error of a prediction, mL/min; 0 without an error.
+template <class Predict>
+double hinted(const Predict& predict, double ml_per_min) {
+  try {
+    predict(ml_per_min);
+  } catch (const InputError& error) {
+    const std::string words = error.mend(), before = "at most ";
+    const auto at = words.find(before);
+    return at == std::string::npos ? std::nan("") : std::atof(words.c_str() + at + before.size());
+  }
+  return 0.0;
+}
+
+/// Every one of these flow rates is refused with the same hint, the hint is answered, and it is the
+/// largest: 15 % more (10 % of it the rounding to two digits) are refused.
+template <class Predict>
+void expect_one_limit(const std::vector<double>& too_large, const Predict& predict) {
+  const double hint = hinted(predict, too_large.front());
+  ASSERT_GT(hint, 0.0);
+  for (const double asked : too_large) {
+    EXPECT_LT(hint, asked);
+    EXPECT_NEAR(hinted(predict, asked) / hint, 1.0, 0.05) << asked;
+  }
+  EXPECT_NO_THROW(predict(hint)) << hint;
+  EXPECT_GT(hinted(predict, 1.15 * hint), 0.0) << hint;
 }
 
 TEST(PredictFlow, MeetsTheCoupledTruthAtAFlowRateNeverRun) {
@@ -139,30 +168,63 @@ TEST(PredictFlow, FlagsWhatLiesBeyondTheCalibrationAndRefusesWhatIsFarBeyond) {
 }
 
 TEST(PredictFlow, SaysWhereTheFlowChokes) {
-  // A wall as soft as foil, 3 Pa/um, and a fluid so thin that friction does not hold it open:
-  // the speed of a pulse is sqrt(h/(rho dzeta/dp)) = 0.7 m/s, which 20 mL/min pass.
+  // A wall as soft as foil, 3 Pa/um, and suction at the outlet: the wall bows in before it, and the
+  // faster the flow the lower the pressure in that throat. A pulse runs there at
+  // sqrt(h/(rho dzeta/dp)) = 0.6 m/s, 6 mL/min.
   CoupledTrial trial;
   trial.wall.stiffness = 3e6;
   trial.wall.stretching = 1e9;  // nothing
   std::vector<Level> levels;
-  for (int k = 0; k <= 10; ++k) {
-    const double p = 40.0 * k;
+  for (int k = -8; k <= 16; ++k) {
+    const double p = 50.0 * k;
     levels.push_back(test::level(
         "h" + std::to_string(k), p, k == 0 ? 0.0 : 0.1,
         test::exact_profile(trial.x, [&](double at) { return trial.wall.zeta(at, p); })));
   }
-  FlowSetup setup = observed(kChannel, {0.02 * mPa_s, 998.0 * kg_per_m3});
+  FlowSetup setup = observed(kChannel, {0.3 * mPa_s, 998.0 * kg_per_m3});
   setup.tables = nullptr;
+  const FlowSetup ready = with_tables(setup, -160.0 * um, 300.0 * um);
   const auto curves = calibration::fit_curves(levels);
-  const auto predicted = [&](FlowRate flow_rate) {
-    return predict_flow(curves, setup, FlowModel::momentum, flow_rate, {20.0 * Pa, {}});
+  const auto predicted = [&](double ml_per_min) {
+    return predict_flow(curves, ready, FlowModel::momentum, ml_per_min * mL_per_min,
+                        {-200.0 * Pa, {}});
   };
-  EXPECT_LT(predicted(5.0 * mL_per_min).speed_index.maxCoeff(), 0.5);
+  EXPECT_LT(predicted(5.0).speed_index.maxCoeff(), 0.5);
   try {
-    predicted(20.0 * mL_per_min);
+    predicted(20.0);
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("chokes"), std::string::npos) << error.what();
+  }
+  expect_one_limit({20.0, 10.0, 40.0, 1e4}, predicted);
+}
+
+TEST(PredictFlow, NamesTheLargestFlowRateThatHasAnAnswerWhateverIsAsked) {
+  CoupledTrial trial;
+  const auto curves = trial.curves();  // up to 20 kPa
+  FlowSetup creeping = observed(kChannel, kOil), inertial = observed(kChannel, kWater);
+  creeping.tables = inertial.tables = nullptr;
+  const auto outlet = [](FlowRate flow_rate) {  // rises as behind a passage
+    return Outlet{Pressure::from_si(100.0 + 20.0 * flow_rate.in(mL_per_min)), {}};
+  };
+  expect_one_limit({20.0, 60.0, 300.0, 1e6}, [&](double ml_per_min) {
+    predict_flow(curves, creeping, FlowModel::creeping, ml_per_min * mL_per_min, outlet);
+  });
+  expect_one_limit({400.0, 500.0, 1e3, 1e4, 1e9}, [&](double ml_per_min) {
+    predict_flow(curves, inertial, FlowModel::momentum, ml_per_min * mL_per_min, outlet);
+  });
+}
+
+TEST(PredictFlow, SaysWhenNoFlowRateHasAnAnswer) {
+  CoupledTrial trial;
+  trial.outlet = 40.0 * kPa;  // twice the calibrated range
+  try {
+    predict(trial, observed(kChannel, kOil), FlowModel::creeping, kOilFlow);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    EXPECT_NE(words.find("nor at any lower flow rate"), std::string::npos) << words;
+    EXPECT_NE(words.find("another outlet pressure"), std::string::npos) << words;
   }
 }
 
