@@ -52,7 +52,7 @@ class Predict(DemoFolder):
                 (("--flow-rate", "30 Pa"), "flow"),
                 (("--flow-rate=-30 mL/min",), "positive"),
                 (("--flow-rate", "30mL/min", "--model", "momentun"), "momentum"),
-                (("--flow-rate", "900mL/min", "--model", "paper"), "less than"),
+                (("--flow-rate", "900mL/min", "--model", "paper"), "at most"),
         ):
             done = self.predict(*arguments, check_code=2)
             self.assertEqual(done.stdout, "")
