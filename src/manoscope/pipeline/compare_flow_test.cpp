@@ -193,6 +193,7 @@ TEST(CompareFlowWith, AGapOfUnknownUncertaintyThereIsNoVerdict) {
   const Measurement m = test.measure(with_models("auto"));
   EXPECT_EQ(m.verdict[0].rfind("no verdict", 0), 0u) << m.verdict[0];
   EXPECT_TRUE(m.model_en_number.isNaN().all());
+  EXPECT_TRUE(m.en_number.isNaN().all());  // nor does QR with its bars
   EXPECT_EQ(m.verdict_model, "section-march");
   EXPECT_TRUE(m.model_drop.isFinite().all());
 }
