@@ -246,7 +246,7 @@ std::optional<NoState> FlowCoupling::extrapolation(const CoupledState& state) co
 
 std::optional<NoState> FlowCoupling::on_the_edge(const CoupledState& state) const {
   constexpr double kNear = 0.8;  // S^2 of a state that a percent of flow rate more may end
-  if (const auto chokes = choking(state, kNear)) return chokes;
+  if (auto chokes = choking(state, kNear)) return chokes;
   const Array1 at = felt(state.pressure);
   for (Index i = 0; i < at.size(); ++i) {
     if (wall_.is_outside(i, at[i])) return left_range(i, at[i]);
