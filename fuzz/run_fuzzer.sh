@@ -7,6 +7,8 @@
 # Exit code 1 if anything fails.
 set -euo pipefail
 
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+export LSAN_OPTIONS=suppressions=$here/leaks.supp:print_suppressions=0
 fuzz_reader=$1 mutate_maps=$2 seconds=$3
 shift 3
 "$mutate_maps" --write-seeds fuzz-corpus
