@@ -97,13 +97,13 @@ std::string axis_around(const char* axis, const std::vector<Array1>& lists, doub
                      : logarithmic_axis(axis, low / 1.4 / scale, 1.4 * high / scale);
 }
 
-/// Whether the fits weight every drop by its own size: not all have an uncertainty.
+/// Whether the fits weight every drop by its own size: the noise of the transducer is not known.
 bool fitted_by_size(const Measurement& m) {
   const bool compliant = m.compliant_drop.isFinite().any();
   const Array1& drop = compliant ? m.compliant_drop : m.transducer_drop;
-  const Array1& bar = compliant ? m.compliant_drop_uncertainty : m.transducer_drop_uncertainty;
+  const Array1& noise = m.transducer_drop_uncertainty;
   for (Index run = 0; run < drop.size(); ++run) {
-    if (std::isfinite(drop(run)) && !std::isgreater(bar(run), 0.0)) return true;
+    if (std::isfinite(drop(run)) && !std::isgreater(noise(run), 0.0)) return true;
   }
   return false;
 }
@@ -125,8 +125,9 @@ std::string fit_words(const Measurement& m, const ReportUnits& units) {
         number_text_with_uncertainty(m.drop_fit_quadratic / quadratic,
                                      kExpansion * m.drop_fit_quadratic_uncertainty / quadratic),
         units.drop.name, units.flow_rate.name,
-        fitted_by_size(m) ? " Every drop counts by its own size, since no noise is stated for it."
-                          : "");
+        fitted_by_size(m)
+            ? " Every drop counts by its own size, since the transducer's noise is not stated."
+            : "");
   }
   if (std::isfinite(m.drop_fit_exponent)) {
     words += fmt::format(" As a power of Q they go with exponent n = {} (1: a rigid channel).",

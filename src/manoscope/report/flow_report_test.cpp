@@ -168,7 +168,7 @@ TEST(FlowFigures, SayHowTheFitWeightsTheDrops) {
   Measurement m = example();
   const std::string words = "Every drop counts by its own size";
   EXPECT_FALSE(holds(pressure_drop(m)->caption, words));
-  m.compliant_drop_uncertainty(0) = 0.0;
+  m.transducer_drop_uncertainty(0) = 0.0;
   EXPECT_TRUE(holds(pressure_drop(m)->caption, words));
 }
 
