@@ -72,13 +72,13 @@ struct FlowSection {
 /// the roof by polynomials of degree k.
 ///
 /// Weak form: for all v, q that vanish where values are given,
-///   Re ((u . grad) u, v) + (grad u, grad v) + 0.03 Re (div u, div v) - (p, div v) - (q, div u)
-///     = (f, v),
-/// where the third term, 0 for the exact flow, holds the divergence of coarse meshes down; whose
-/// natural condition is SideCondition::open. Without an open side p is 0 at one node.
-/// Newton's iteration with the exact derivative, from Stokes flow to `reynolds` in steps that halve
-/// where it fails; every linear system is solved directly and checked (SparseDirect). Source: e.g.
-/// H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
+///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
+/// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
+/// Newton's iteration with the exact derivative, from Stokes flow; where that does not lead to
+/// `reynolds`, as on coarse meshes, once more with 0.01 Re (div u, div v) on the left, which is 0
+/// for the exact flow, by steps in the Reynolds number that halve where it fails. Every linear
+/// system is solved directly and checked (SparseDirect). Source: e.g. H. Elman, D. Silvester & A.
+/// Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
 ///
 /// Errors in the 2-norm fall with h^(k+1) in u and h^k in p where the solution is smooth (test for
 /// k = 2, 3). Pressure is unbounded in corners where given velocities clash or where the inlet
