@@ -118,9 +118,9 @@ validation::Outlet outlet_at(const Experiment& experiment, const PredictOptions&
 
 std::vector<std::string> exact_inputs(const Experiment& experiment) {
   std::vector<std::string> names;
-  if (!experiment.channel.height_uncertainty) names.push_back("the gap (channel.height)");
-  if (!experiment.fluid.viscosity_uncertainty) names.push_back("the viscosity");
-  if (!experiment.instrument.flow_rate_uncertainty) names.push_back("the flow rate");
+  if (!experiment.channel.height_uncertainty) names.emplace_back("the gap (channel.height)");
+  if (!experiment.fluid.viscosity_uncertainty) names.emplace_back("the viscosity");
+  if (!experiment.instrument.flow_rate_uncertainty) names.emplace_back("the flow rate");
   return names;
 }
 

@@ -125,7 +125,7 @@ Array1 inlet_rise(const FlowSetup& setup, const flow::FlowCase& flow) {
       other.inlet = inlet;
       return flow::pressure_along(march, other, *tables).pressure;
     };
-    const Array1 rise = solve(flow::InletProfile::uniform) - solve(flow::InletProfile::developed);
+    Array1 rise = solve(flow::InletProfile::uniform) - solve(flow::InletProfile::developed);
     if (rise.isFinite().all()) return rise;
   }
   throw InputError("inlet spread", "the march from a uniform or a developed profile broke down",
