@@ -13,17 +13,9 @@ namespace {
 
 using results::Measurement;
 
-twin::Scenario momentum_scenario() {
-  twin::Scenario scenario = small_scenario();
-  scenario.flow_rates = {10.0 * mL_per_min, 40.0 * mL_per_min};
-  scenario.solver.momentum_factor = 1.2;  // of the rectangle: as if not told
-  scenario.solver.flow_model = "momentum";
-  return scenario;
-}
-
 /// The inlet of a twin is developed.
 struct MomentumExperiment : TestExperiment {
-  MomentumExperiment() : TestExperiment(momentum_scenario()) {
+  MomentumExperiment() : TestExperiment(momentum_scenario({10.0 * mL_per_min, 40.0 * mL_per_min})) {
     twin.experiment_toml += "\n[inlet]\nspread = 0.0\n";
   }
 };

@@ -11,14 +11,6 @@
 namespace manoscope::pipeline {
 namespace {
 
-twin::Scenario scenario_at(std::vector<FlowRate> flow_rates) {
-  twin::Scenario scenario = small_scenario();
-  scenario.solver.momentum_factor = 1.2;  // of the rectangle: as if not told
-  scenario.solver.flow_model = "momentum";
-  scenario.flow_rates = std::move(flow_rates);
-  return scenario;
-}
-
 MeasureOptions local() {
   MeasureOptions options = station_by_station();
   options.flow.flow_stations = 80;
@@ -27,14 +19,14 @@ MeasureOptions local() {
 
 /// Calibrated, and run at two flow rates.
 experiment::Experiment read_once() {
-  static TestExperiment test(scenario_at({10.0 * mL_per_min, 40.0 * mL_per_min}));
+  static TestExperiment test(momentum_scenario({10.0 * mL_per_min, 40.0 * mL_per_min}));
   static const experiment::Experiment once = test.read();
   return once;
 }
 
 TEST(Predict, FlowRatesThatWereNotRun) {
   const std::vector<FlowRate> asked{20.0 * mL_per_min, 30.0 * mL_per_min};
-  const twin::SolvedScenario truth = twin::solve_scenario(scenario_at(asked));
+  const twin::SolvedScenario truth = twin::solve_scenario(momentum_scenario(asked));
   PredictOptions options;
   options.coupling.healing_length = Length{};  // a wall that answers to p at its own place
   const Predictions found = predict(read_once(), asked, options, local());

@@ -18,14 +18,6 @@ namespace {
 using flow::InletProfile;
 using results::Simulation;
 
-twin::Scenario momentum_scenario() {
-  twin::Scenario scenario = small_scenario();
-  scenario.flow_rates = {10.0 * mL_per_min, 40.0 * mL_per_min};
-  scenario.solver.momentum_factor = 1.2;  // of the rectangle: as if not told
-  scenario.solver.flow_model = "momentum";
-  return scenario;
-}
-
 /// A uniform inlet costs this share of the drop more.
 constexpr double kEntry = 0.1;
 
@@ -78,7 +70,7 @@ struct Asked {
 class SimulateRuns : public ::testing::Test {
  protected:
   static experiment::Experiment& experiment() {
-    static TestExperiment test(momentum_scenario());
+    static TestExperiment test(momentum_scenario({10.0 * mL_per_min, 40.0 * mL_per_min}));
     static experiment::Experiment once = test.read();
     return once;
   }
@@ -98,7 +90,8 @@ class SimulateRuns : public ::testing::Test {
 };
 
 TEST_F(SimulateRuns, AgreeWithReadingAndTruthWhereTheSolverIsTrue) {
-  const twin::SolvedScenario truth = twin::solve_scenario(momentum_scenario());
+  const twin::SolvedScenario truth =
+      twin::solve_scenario(momentum_scenario({10.0 * mL_per_min, 40.0 * mL_per_min}));
   for (const std::size_t run : {0u, 1u}) {
     const Simulation s = simulate_run(with_spread(0.0), ready(), run, {3, "auto"}, stand_in);
     ASSERT_EQ(s.variant.size(), 1u);

@@ -5,6 +5,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/experiment/experiment.hpp"
@@ -26,6 +27,15 @@ inline twin::Scenario small_scenario() {
   scenario.camera.blobs = 0.0;
   scenario.solver.steps = 200;
   scenario.flow_rates = {20.0 * mL_per_min, 70.0 * mL_per_min};
+  return scenario;
+}
+
+/// The same, its flow a momentum balance on the sections.
+inline twin::Scenario momentum_scenario(std::vector<FlowRate> flow_rates) {
+  twin::Scenario scenario = small_scenario();
+  scenario.flow_rates = std::move(flow_rates);
+  scenario.solver.momentum_factor = 1.2;  // of the rectangle: as if not told
+  scenario.solver.flow_model = "momentum";
   return scenario;
 }
 
