@@ -1,35 +1,29 @@
 #pragma once
 
-#include <deal.II/base/quadrature_lib.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
+#include <Eigen/Core>
 #include <vector>
 
-#include "cell_place.hpp"
-#include "dof_pattern.hpp"
 #include "flow_solver.hpp"
-#include "mapped_box.hpp"
+#include "lattice_mesh.hpp"
+#include "processes.hpp"
 
 namespace manoscope::navier_stokes {
 
-/// A FlowProblem on its mesh, and its solution.
+/// A FlowProblem on its mesh, and its solution: the part of this process.
 template <int dim>
 struct FlowSolver<dim>::Discrete {
   using DofIndex = dealii::types::global_dof_index;
+  /// One value a degree of freedom: its own, and those of cells next to them.
+  using State = dealii::LinearAlgebra::distributed::Vector<double>;
 
-  explicit Discrete(const FlowProblem<dim>& given)
-      : problem(given),
-        box(problem.edges, problem.gap, problem.order),
-        velocity_element(problem.order),
-        pressure_element(problem.order - 1),
-        element(velocity_element, dim, pressure_element, 1),
-        dofs(box.triangulation) {
-    dofs.distribute_dofs(element);
-    state.assign(dofs.n_dofs(), 0.0);
-  }
+  explicit Discrete(const FlowProblem<dim>& given);
+
+  State zero_state() const { return {owned, relevant, processes.comm()}; }
 
   /// Velocities (node, component) and pressures (node) of a cell.
   struct Local {
@@ -47,15 +41,34 @@ struct FlowSolver<dim>::Discrete {
     return local;
   }
 
+  /// Values at the unit place of a cell of this process.
+  template <class Cell>
+  FlowPoint<dim> point(const Cell& cell, const dealii::Point<dim>& unit) const {
+    std::vector<DofIndex> indices(element.n_dofs_per_cell());
+    cell->get_dof_indices(indices);
+    const Local local = local_state(indices);
+    const dealii::Point<dim> place = mesh.mapping().transform_unit_to_real_cell(cell, unit);
+    FlowPoint<dim> point;
+    for (int axis = 0; axis < dim; ++axis) point.place[axis] = place[axis];
+    for (unsigned int a = 0; a < velocity_element.n_dofs_per_cell(); ++a) {
+      const double shape = velocity_element.shape_value(a, unit);
+      for (int c = 0; c < dim; ++c) point.velocity[c] += shape * local.velocity(a, c);
+    }
+    for (unsigned int k = 0; k < pressure_element.n_dofs_per_cell(); ++k) {
+      point.pressure += pressure_element.shape_value(k, unit) * local.pressure(k);
+    }
+    return point;
+  }
+
+  const Processes& processes = Processes::all();
   FlowProblem<dim> problem;
-  MappedBox<dim> box;
+  LatticeMesh<dim> mesh;
   dealii::FE_Q<dim> velocity_element, pressure_element;
   dealii::FESystem<dim> element;
   dealii::DoFHandler<dim> dofs;
-  std::vector<double> state;  ///< one a degree of freedom
-  int n_unknowns = 0;
-  int n_newton_steps = 0;
-  double largest_residual = 0.0;
+  dealii::IndexSet owned, relevant;
+  State state;
+  FlowCosts costs;
 };
 
 }  // namespace manoscope::navier_stokes

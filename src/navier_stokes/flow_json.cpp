@@ -1,5 +1,6 @@
 #include "flow_json.hpp"
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -29,9 +30,12 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
   object["floor_pressure_Pa"] = list(flow.floor_pressure);
   object["wall_shear_Pa"] = list(flow.wall_shear);
   object["floor_shear_Pa"] = list(flow.floor_shear);
-  object["unknowns"] = flow.n_unknowns;
-  object["newton_steps"] = flow.n_newton_steps;
-  object["largest_linear_residual"] = flow.largest_residual;
+  object["unknowns"] = static_cast<std::int64_t>(flow.costs.n_unknowns);
+  object["newton_steps"] = flow.costs.n_newton_steps;
+  object["krylov_steps"] = flow.costs.n_iterations;
+  object["grad_div"] = flow.costs.grad_div;
+  object["largest_linear_residual"] = flow.costs.largest_residual;
+  object["processes"] = effort.n_processes;
   object["seconds"] = effort.seconds;
   object["peak_MB"] = effort.peak_megabytes;
   return object.dump() + '\n';

@@ -9,8 +9,9 @@ namespace manoscope::navier_stokes {
 
 /// What a simulation took beside its results.
 struct Effort {
+  int n_processes = 1;
   double seconds = 0.0;
-  double peak_megabytes = 0.0;  ///< most memory held at a time, 10^6 bytes
+  double peak_megabytes = 0.0;  ///< most memory held at a time by all processes, 10^6 bytes
 };
 
 /// One object, SI units: "dim", "drop_Pa", "drop_numerical_uncertainty_Pa", "x_m", "gap_m",

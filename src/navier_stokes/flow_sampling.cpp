@@ -1,5 +1,11 @@
 // What is read off a solved flow: points, sections, errors.
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "discrete_flow.hpp"
 #include "manoscope/core/error.hpp"
@@ -38,17 +44,17 @@ double wall_shear(const Eigen::Matrix<double, dim, dim>& slope, double wall_slop
   return normal.dot(slope * tangent);
 }
 
+/// Reads one section of a column of cells that belongs to this process.
 template <int dim>
 class SectionReader {
  public:
   using Discrete = typename FlowSolver<dim>::Discrete;
 
   SectionReader(const Discrete& discrete, int column, double unit_x)
-      : discrete_(discrete), column_(column), unit_x_(unit_x) {
-    for (int axis = 0; axis < dim; ++axis) {
-      n_cells_[axis] = static_cast<int>(discrete.problem.edges[axis].size()) - 1;
-    }
-  }
+      : discrete_(discrete),
+        column_(column),
+        unit_x_(unit_x),
+        indices_(discrete.element.n_dofs_per_cell()) {}
 
   FlowSection read() {
     FlowSection section;
@@ -58,32 +64,23 @@ class SectionReader {
   }
 
  private:
-  CellPlace<dim> place(int up, int across) const {
-    CellPlace<dim> result;
-    result.n_cells = n_cells_;
-    result.index[0] = column_;
-    result.index[1] = up;
-    if constexpr (dim == 3) result.index[2] = across;
-    return result;
-  }
-
-  void read_area(FlowSection& section) const {
+  void read_area(FlowSection& section) {
     const auto quadrature =
         section_quadrature<dim>(unit_x_, static_cast<unsigned int>(discrete_.problem.order) + 2);
     const auto flags = dealii::update_values | dealii::update_jacobians;
-    dealii::FEValues<dim> of_velocity(discrete_.box.mapping, discrete_.velocity_element, quadrature,
-                                      flags);
-    dealii::FEValues<dim> of_pressure(discrete_.box.mapping, discrete_.pressure_element, quadrature,
+    const auto& mapping = discrete_.mesh.mapping();
+    dealii::FEValues<dim> of_velocity(mapping, discrete_.velocity_element, quadrature, flags);
+    dealii::FEValues<dim> of_pressure(mapping, discrete_.pressure_element, quadrature,
                                       dealii::update_values);
-    std::vector<typename Discrete::DofIndex> indices(discrete_.element.n_dofs_per_cell());
     double area = 0.0, force = 0.0;
-    const int n_across = dim == 3 ? n_cells_[dim - 1] : 1;
-    for (int up = 0; up < n_cells_[1]; ++up) {
+    const int n_across = dim == 3 ? discrete_.mesh.n_cells(dim - 1) : 1;
+    for (int up = 0; up < discrete_.mesh.n_cells(1); ++up) {
       for (int across = 0; across < n_across; ++across) {
-        const auto cell = place(up, across).cell(discrete_.dofs);
-        cell->get_dof_indices(indices);
-        const auto local = discrete_.local_state(indices);
-        const typename dealii::Triangulation<dim>::cell_iterator plain_cell(cell);
+        const auto cell = discrete_.mesh.own_cell(discrete_.dofs, index(up, across));
+        if (!cell) continue;  // solid
+        (*cell)->get_dof_indices(indices_);
+        const auto local = discrete_.local_state(indices_);
+        const typename dealii::Triangulation<dim>::cell_iterator plain_cell(*cell);
         of_velocity.reinit(plain_cell);
         of_pressure.reinit(plain_cell);
         for (const unsigned int q : of_velocity.quadrature_point_indices()) {
@@ -103,77 +100,143 @@ class SectionReader {
     section.mean_pressure = force / area;
   }
 
-  void read_wall(bool is_roof, FlowSection& section) const {
-    dealii::Point<dim> unit;
-    unit[0] = unit_x_;
-    unit[1] = is_roof ? 1.0 : 0.0;
-    const dealii::Quadrature<dim> point(unit);
-    dealii::FEValues<dim> values(discrete_.box.mapping, discrete_.velocity_element, point,
+  void read_wall(bool is_roof, FlowSection& section) {
+    // Middle of the first cell beside the wall, at z = 0 from above.
+    std::array<double, dim> beside{};
+    beside[0] = discrete_.mesh.edges()[0][column_];
+    beside[1] = is_roof ? std::nextafter(1.0, 0.0) : 0.0;
+    auto located = discrete_.mesh.locate(beside);
+    located.index[0] = column_;
+    located.unit[0] = unit_x_;
+    located.unit[1] = is_roof ? 1.0 : 0.0;
+    const auto cell = discrete_.mesh.own_cell(discrete_.dofs, located.index);
+    if (!cell) return;
+    const dealii::Quadrature<dim> point(located.unit);
+    dealii::FEValues<dim> values(discrete_.mesh.mapping(), discrete_.velocity_element, point,
                                  dealii::update_gradients | dealii::update_jacobians);
-    const auto cell = place(is_roof ? n_cells_[1] - 1 : 0, 0).cell(discrete_.dofs);
-    std::vector<typename Discrete::DofIndex> indices(discrete_.element.n_dofs_per_cell());
-    cell->get_dof_indices(indices);
-    const auto local = discrete_.local_state(indices);
-    values.reinit(typename dealii::Triangulation<dim>::cell_iterator(cell));
+    (*cell)->get_dof_indices(indices_);
+    const auto local = discrete_.local_state(indices_);
+    values.reinit(typename dealii::Triangulation<dim>::cell_iterator(*cell));
     Eigen::Matrix<double, dim, dim> slope = Eigen::Matrix<double, dim, dim>::Zero();
     for (unsigned int a = 0; a < values.dofs_per_cell; ++a) {
       for (int axis = 0; axis < dim; ++axis) {
         slope.row(axis) += values.shape_grad(a, 0)[axis] * local.velocity.row(a);
       }
     }
-    double pressure = 0.0;
-    for (unsigned int k = 0; k < discrete_.pressure_element.n_dofs_per_cell(); ++k) {
-      pressure += local.pressure(k) * discrete_.pressure_element.shape_value(k, unit);
-    }
     const auto& jacobian = values.jacobian(0);
-    const double shear = wall_shear<dim>(slope, jacobian[1][0] / jacobian[0][0], is_roof);
-    (is_roof ? section.roof_pressure : section.floor_pressure) = pressure;
-    (is_roof ? section.roof_shear : section.floor_shear) = shear;
+    (is_roof ? section.roof_pressure : section.floor_pressure) =
+        discrete_.point(*cell, located.unit).pressure;
+    (is_roof ? section.roof_shear : section.floor_shear) =
+        wall_shear<dim>(slope, jacobian[1][0] / jacobian[0][0], is_roof);
+  }
+
+  CellIndex<dim> index(int up, int across) const {
+    CellIndex<dim> result{column_, up};
+    if constexpr (dim == 3) result[2] = across;
+    return result;
   }
 
   const Discrete& discrete_;
   int column_;
   double unit_x_;
-  std::array<int, dim> n_cells_{};
+  std::vector<typename Discrete::DofIndex> indices_;
 };
 
-FlowSection mean(const FlowSection& a, const FlowSection& b) {
-  return {0.5 * (a.mean_pressure + b.mean_pressure),   0.5 * (a.roof_pressure + b.roof_pressure),
-          0.5 * (a.floor_pressure + b.floor_pressure), 0.5 * (a.roof_shear + b.roof_shear),
-          0.5 * (a.floor_shear + b.floor_shear),       0.5 * (a.flow + b.flow)};
+using SectionValues = std::array<double, 6>;
+
+SectionValues values_of(const FlowSection& section) {
+  return {section.mean_pressure, section.roof_pressure, section.floor_pressure,
+          section.roof_shear,    section.floor_shear,   section.flow};
 }
+
+FlowSection section_of(const double* v) { return {v[0], v[1], v[2], v[3], v[4], v[5]}; }
 
 }  // namespace
 
 template <int dim>
-FlowPoint<dim> FlowSolver<dim>::at(const Vector<dim>& box) const {
-  const auto place = CellPlace<dim>::of(discrete_->problem.edges, box);
-  const auto cell = place.cell(discrete_->dofs);
-  std::vector<typename Discrete::DofIndex> indices(discrete_->element.n_dofs_per_cell());
-  cell->get_dof_indices(indices);
-  const auto local = discrete_->local_state(indices);
-  const dealii::Point<dim> unit = place.unit_point();
-  const auto real = discrete_->box.mapping.transform_unit_to_real_cell(cell, unit);
+FlowPoint<dim> FlowSolver<dim>::at(const Vector<dim>& chart) const {
+  const auto located = discrete_->mesh.locate(chart);
+  const auto cell = discrete_->mesh.own_cell(discrete_->dofs, located.index);
+  std::vector<double> values(2 * dim + 2, 0.0);
+  if (cell) {
+    const FlowPoint<dim> point = discrete_->point(*cell, located.unit);
+    std::copy(point.place.begin(), point.place.end(), values.begin());
+    std::copy(point.velocity.begin(), point.velocity.end(), values.begin() + dim);
+    values[2 * dim] = point.pressure;
+    values[2 * dim + 1] = 1.0;
+  }
+  values = discrete_->processes.sum(values);
+  MANO_ASSERT(values[2 * dim + 1] == 1.0);
   FlowPoint<dim> point;
-  for (int axis = 0; axis < dim; ++axis) point.place[axis] = real[axis];
-  for (unsigned int a = 0; a < discrete_->velocity_element.n_dofs_per_cell(); ++a) {
-    const double shape = discrete_->velocity_element.shape_value(a, unit);
-    for (int c = 0; c < dim; ++c) point.velocity[c] += shape * local.velocity(a, c);
-  }
-  for (unsigned int k = 0; k < discrete_->pressure_element.n_dofs_per_cell(); ++k) {
-    point.pressure += discrete_->pressure_element.shape_value(k, unit) * local.pressure(k);
-  }
+  std::copy_n(values.begin(), dim, point.place.begin());
+  std::copy_n(values.begin() + dim, dim, point.velocity.begin());
+  point.pressure = values[2 * dim];
   return point;
 }
 
 template <int dim>
-FlowSection FlowSolver<dim>::section(double x) const {
-  Vector<dim> start{};
-  start[0] = x;
-  const auto place = CellPlace<dim>::of(discrete_->problem.edges, start);
-  const FlowSection section = SectionReader<dim>(*discrete_, place.index[0], place.unit[0]).read();
-  if (place.unit[0] > 0.0 || place.index[0] == 0) return section;
-  return mean(section, SectionReader<dim>(*discrete_, place.index[0] - 1, 1.0).read());
+std::vector<FlowSection> FlowSolver<dim>::sections(const std::vector<double>& x) const {
+  constexpr std::size_t kSize = std::tuple_size_v<SectionValues>;
+  std::vector<double> values(kSize * x.size(), 0.0);
+  const auto [first, last] = discrete_->mesh.own_columns();
+  const auto add = [&, first = first, last = last](std::size_t i, int column, double unit_x,
+                                                   double weight) {
+    if (column < first || column >= last) return;
+    const auto part = values_of(SectionReader<dim>(*discrete_, column, unit_x).read());
+    for (std::size_t k = 0; k < kSize; ++k) values[kSize * i + k] += weight * part[k];
+  };
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    Vector<dim> start{};
+    start[0] = x[i];
+    const auto located = discrete_->mesh.locate(start);
+    const bool is_edge = located.unit[0] == 0.0 && located.index[0] > 0;
+    add(i, located.index[0], located.unit[0], is_edge ? 0.5 : 1.0);
+    if (is_edge) add(i, located.index[0] - 1, 1.0, 0.5);
+  }
+  values = discrete_->processes.sum(values);
+  std::vector<FlowSection> result;
+  for (std::size_t i = 0; i < x.size(); ++i) result.push_back(section_of(&values[kSize * i]));
+  return result;
+}
+
+template <int dim>
+FlowPiece<dim> FlowSolver<dim>::piece() const {
+  const Discrete& discrete = *discrete_;
+  const int order = discrete.problem.order;
+  FlowPiece<dim> piece;
+  std::map<CellIndex<dim>, std::size_t> known;  // points of the finer lattice
+  std::vector<CellIndex<dim>> steps(1 << dim);  // to the corners of a part
+  for (int corner = 0; corner < 1 << dim; ++corner) {
+    for (int axis = 0; axis < dim; ++axis) steps[corner][axis] = corner >> axis & 1;
+  }
+  for (const auto& cell : discrete.dofs.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    const CellIndex<dim> index = discrete.mesh.index_of(cell);
+    const auto number_of = [&](const CellIndex<dim>& part) {
+      CellIndex<dim> fine;
+      dealii::Point<dim> unit;
+      for (int axis = 0; axis < dim; ++axis) {
+        fine[axis] = index[axis] * order + part[axis];
+        unit[axis] = static_cast<double>(part[axis]) / order;
+      }
+      const auto [at, is_new] = known.emplace(fine, piece.points.size());
+      if (is_new) piece.points.push_back(discrete.point(cell, unit));
+      return at->second;
+    };
+    int n_parts = 1;
+    for (int axis = 0; axis < dim; ++axis) n_parts *= order;
+    for (int part = 0; part < n_parts; ++part) {
+      CellIndex<dim> low;
+      for (int axis = 0, rest = part; axis < dim; ++axis, rest /= order) low[axis] = rest % order;
+      piece.cells.emplace_back();
+      for (int corner = 0; corner < 1 << dim; ++corner) {
+        CellIndex<dim> at = low;
+        for (int axis = 0; axis < dim; ++axis) at[axis] += steps[corner][axis];
+        piece.cells.back()[corner] = number_of(at);
+      }
+    }
+  }
+  return piece;
 }
 
 template <int dim>
@@ -182,13 +245,14 @@ typename FlowSolver<dim>::Errors FlowSolver<dim>::errors(
     const std::function<double(const Vector<dim>&)>& pressure) const {
   const dealii::QGauss<dim> quadrature(static_cast<unsigned int>(discrete_->problem.order) + 3);
   dealii::FEValues<dim> of_velocity(
-      discrete_->box.mapping, discrete_->velocity_element, quadrature,
+      discrete_->mesh.mapping(), discrete_->velocity_element, quadrature,
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
-  dealii::FEValues<dim> of_pressure(discrete_->box.mapping, discrete_->pressure_element, quadrature,
+  dealii::FEValues<dim> of_pressure(discrete_->mesh.mapping(), discrete_->pressure_element, quadrature,
                                     dealii::update_values);
   std::vector<typename Discrete::DofIndex> indices(discrete_->element.n_dofs_per_cell());
   double volume = 0.0, u_square = 0.0, p_square = 0.0, p_sum = 0.0;
   for (const auto& cell : discrete_->dofs.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
     cell->get_dof_indices(indices);
     const auto local = discrete_->local_state(indices);
     const typename dealii::Triangulation<dim>::cell_iterator plain_cell(cell);
@@ -215,13 +279,16 @@ typename FlowSolver<dim>::Errors FlowSolver<dim>::errors(
       p_square += weight * p * p;
     }
   }
-  return {std::sqrt(u_square), std::sqrt(std::max(0.0, p_square - p_sum * p_sum / volume))};
+  const auto sums = discrete_->processes.sum({volume, u_square, p_square, p_sum});
+  return {std::sqrt(sums[1]), std::sqrt(std::max(0.0, sums[2] - sums[3] * sums[3] / sums[0]))};
 }
 
 template FlowPoint<2> FlowSolver<2>::at(const Vector<2>&) const;
 template FlowPoint<3> FlowSolver<3>::at(const Vector<3>&) const;
-template FlowSection FlowSolver<2>::section(double) const;
-template FlowSection FlowSolver<3>::section(double) const;
+template std::vector<FlowSection> FlowSolver<2>::sections(const std::vector<double>&) const;
+template std::vector<FlowSection> FlowSolver<3>::sections(const std::vector<double>&) const;
+template FlowPiece<2> FlowSolver<2>::piece() const;
+template FlowPiece<3> FlowSolver<3>::piece() const;
 template FlowSolver<2>::Errors FlowSolver<2>::errors(
     const std::function<Vector<2>(const Vector<2>&)>&,
     const std::function<double(const Vector<2>&)>&) const;

@@ -116,7 +116,7 @@ std::function<Vector<dim>(const Vector<dim>&)> inlet_velocity(const SimulatedCha
     return [](const Vector<dim>&) { return Vector<dim>{1.0}; };
   }
   const double start = problem.edges[0].front();
-  const auto gap = [gap = problem.gap, start](double z) { return gap(start, z); };
+  const auto gap = [gap = ScaledGap(given, dim), start](double z) { return gap(start, z); };
   if constexpr (dim == 2) {
     return [h = gap(0.0)](const Vector<2>& place) {
       const double t = place[1] / h;
@@ -134,7 +134,7 @@ template <int dim>
 FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells, int order) {
   FlowProblem<dim> problem;
   problem.edges = edges<dim>(given, cells);
-  problem.gap = ScaledGap(given, dim);
+  problem.place = below_roof<dim>(ScaledGap(given, dim));
   problem.reynolds = Scales(given).reynolds;
   problem.order = order;
   problem.sides[SideName::inlet] = {SideCondition::velocity, inlet_velocity<dim>(given, problem)};
@@ -158,24 +158,38 @@ template <int dim>
 Readings read(const FlowSolver<dim>& solver, const SimulatedChannel& given,
               const Array1& stations) {
   const Scales scales(given);
-  const double length = given.channel.length.si() / scales.length;
-  const double outlet = solver.section(length).mean_pressure;
   const Index n = stations.size();
+  std::vector<double> places(stations.begin(), stations.end());
+  places.push_back(0.0);
+  places.push_back(given.channel.length.si());
+  for (double& place : places) place /= scales.length;
+  const std::vector<FlowSection> sections = solver.sections(places);
+  const double outlet = sections.back().mean_pressure;
   Readings readings;
   for (Array1* values : {&readings.mean_pressure, &readings.wall_pressure, &readings.floor_pressure,
                          &readings.wall_shear, &readings.floor_shear}) {
     values->resize(n);
   }
   for (Index i = 0; i < n; ++i) {
-    const FlowSection section = solver.section(stations[i] / scales.length);
+    const FlowSection& section = sections[static_cast<std::size_t>(i)];
     readings.mean_pressure[i] = scales.pressure * (section.mean_pressure - outlet);
     readings.wall_pressure[i] = scales.pressure * (section.roof_pressure - outlet);
     readings.floor_pressure[i] = scales.pressure * (section.floor_pressure - outlet);
     readings.wall_shear[i] = scales.pressure * section.roof_shear;
     readings.floor_shear[i] = scales.pressure * section.floor_shear;
   }
-  readings.drop = scales.pressure * (solver.section(0.0).mean_pressure - outlet);
+  readings.drop = scales.pressure * (sections[sections.size() - 2].mean_pressure - outlet);
   return readings;
+}
+
+/// Costs of both meshes; unknowns are those of the finer.
+FlowCosts together(const FlowCosts& coarse, const FlowCosts& fine) {
+  FlowCosts sum = fine;
+  sum.n_newton_steps += coarse.n_newton_steps;
+  sum.n_iterations += coarse.n_iterations;
+  sum.largest_residual = std::max(sum.largest_residual, coarse.largest_residual);
+  sum.grad_div = fine.grad_div || coarse.grad_div;
+  return sum;
 }
 
 template <int dim>
@@ -188,8 +202,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
     FlowSolver<dim> coarse(problem_of<dim>(given, fine.coarser(), mesh.order));
     coarse.solve(monitor);
     coarse_readings = read(coarse, given, stations);
-    result.n_newton_steps = coarse.n_newton_steps();
-    result.largest_residual = coarse.largest_residual();
+    result.costs = coarse.costs();
   }
   monitor.report("flow on the coarser mesh", 1.0);
   FlowSolver<dim> solver(problem_of<dim>(given, fine, mesh.order));
@@ -219,14 +232,11 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
   result.coarse_drop = coarse_readings.drop;
   result.drop_uncertainty = kUncertainty * std::abs(readings.drop - coarse_readings.drop);
   result.converged = result.drop_uncertainty <= mesh.tolerance * std::abs(result.drop);
-  result.n_unknowns = solver.n_unknowns();
-  result.n_newton_steps += solver.n_newton_steps();
-  result.largest_residual = std::max(result.largest_residual, solver.largest_residual());
+  result.costs = together(result.costs, solver.costs());
   if (!vtu.empty()) {
     const Scales scales(given);
     const double outlet = solver.section(given.channel.length.si() / scales.length).mean_pressure;
-    write_vtu<dim>(vtu, solver, edges<dim>(given, fine), mesh.order,
-                   {scales.length, scales.velocity, scales.pressure, outlet});
+    write_vtu<dim>(vtu, solver, {scales.length, scales.velocity, scales.pressure, outlet});
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include "manoscope/core/units.hpp"
 #include "manoscope/flow/channel.hpp"
 #include "manoscope/flow/marching.hpp"
+#include "flow_solver.hpp"
 #include "manoscope/flow/roof.hpp"
 #include "simulation_options.hpp"
 
@@ -43,9 +44,7 @@ struct SimulatedFlow {
   double drop_uncertainty = 0.0;  ///< Pa: numerical, k = 1
   double coarse_drop = 0.0;       ///< Pa: on the coarser mesh
   bool converged = false;         ///< drop_uncertainty is within the tolerance asked for
-  int n_unknowns = 0;             ///< of the finer mesh
-  int n_newton_steps = 0;         ///< on both meshes
-  double largest_residual = 0.0;  ///< of all linear systems, relative
+  FlowCosts costs;                ///< of both meshes; unknowns of the finer
 };
 
 /// Solves the steady laminar flow of an incompressible fluid on two meshes.

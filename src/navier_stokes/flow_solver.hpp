@@ -22,6 +22,12 @@ enum class SideCondition {
   open,      ///< do nothing: du/dn - p n = 0
 };
 
+/// How the linear systems are solved.
+enum class SolverKind {
+  direct,     ///< LU factors: the quickest for some 100,000 unknowns
+  iterative,  ///< Krylov steps, preconditioned: memory in proportion to the unknowns
+};
+
 template <int dim>
 struct Side {
   SideCondition condition = SideCondition::wall;
@@ -31,24 +37,52 @@ struct Side {
 /// Sides in the order of FlowProblem::sides; centre and flank in three dimensions only.
 enum SideName : int { inlet = 0, outlet = 1, floor = 2, roof = 3, centre = 4, flank = 5 };
 
-/// Steady incompressible flow below a roof, free of units.
+/// Steady incompressible flow through a lattice of cells, free of units.
 ///
 ///   Re (u . grad) u - laplace u + grad p = f,  div u = 0
 ///
 /// with lengths in some L, velocities in some U, p in eta U/L, Re = rho U L/eta, f in eta U/L^2.
-/// The mesh is a box of cells in x, t = y/h(x, z) and z.
+/// A point of the lattice, its chart, stands at place(chart) in space; the first coordinate of both
+/// is x.
 template <int dim>
 struct FlowProblem {
-  std::array<std::vector<double>, dim> edges;     ///< of the cells along x, t and z; ascending
-  std::function<double(double x, double z)> gap;  ///< h > 0; z is 0 in two dimensions
+  std::array<std::vector<double>, dim> edges;  ///< of the cells along each axis; ascending
+  std::function<Vector<dim>(const Vector<dim>& chart)> place;
+  /// Cells without fluid, by the middle of their chart; their faces are walls. Empty: none.
+  std::function<bool(const Vector<dim>& chart)> solid;
   double reynolds = 0.0;
   int order = 2;  ///< of the velocities, one more than that of p; 2 to 4
-  std::array<Side<dim>, 2 * dim> sides;
+  std::array<Side<dim>, 2 * dim> sides;  ///< of the lattice
   /// Walls slip upstream of this x; the gap must be constant there.
   double slip_before = -std::numeric_limits<double>::infinity();
-  /// Flow through the inlet that its velocities are scaled to, in U L^(dim - 1).
+  /// What flows in where velocities are given, which are scaled to it, in U L^(dim - 1).
   std::optional<double> inlet_flow;
   std::function<Vector<dim>(const Vector<dim>& place)> force;  ///< f; empty: none
+  SolverKind solver = SolverKind::direct;
+};
+
+/// Charts (x, t[, z]) below a roof: y = t h(x, z) up to the roof at t = 1, and at unit steep beyond.
+/// @param gap  h(x, z) > 0; z is 0 in two dimensions.
+template <int dim>
+std::function<Vector<dim>(const Vector<dim>&)> below_roof(
+    std::function<double(double x, double z)> gap) {
+  return [gap = std::move(gap)](const Vector<dim>& chart) {
+    Vector<dim> place = chart;
+    double z = 0.0;
+    if constexpr (dim == 3) z = chart[2];
+    const double h = gap(chart[0], z);
+    place[1] = chart[1] <= 1.0 ? chart[1] * h : h + (chart[1] - 1.0);
+    return place;
+  };
+}
+
+/// What a solution took.
+struct FlowCosts {
+  double n_unknowns = 0.0;
+  int n_newton_steps = 0;         ///< linear systems solved
+  int n_iterations = 0;           ///< Krylov steps in all
+  double largest_residual = 0.0;  ///< worst |b - A x| / |b|
+  bool grad_div = false;          ///< the term was needed
 };
 
 /// Values at one place.
@@ -58,7 +92,15 @@ struct FlowPoint {
   double pressure = 0.0;
 };
 
-/// Values over one section, free of units.
+/// The flow in the cells of this process, each cut into `order` parts along each axis.
+template <int dim>
+struct FlowPiece {
+  std::vector<FlowPoint<dim>> points;
+  std::vector<std::array<std::size_t, 1 << dim>> cells;  ///< corners, the first axis fastest
+};
+
+/// Values over one section of a lattice whose t runs from 0 on the floor to 1 on the roof, free of
+/// units.
 struct FlowSection {
   double mean_pressure = 0.0;   ///< over the area
   double roof_pressure = 0.0;   ///< on the roof at z = 0
@@ -69,16 +111,17 @@ struct FlowSection {
 };
 
 /// Taylor-Hood finite elements for a FlowProblem: Q_k velocities, Q_(k-1) pressure, cells mapped to
-/// the roof by polynomials of degree k.
+/// their place by polynomials of degree k. All processes that `mpirun` started share the columns of
+/// the lattice; every call is made by all of them and answers the same to all.
 ///
 /// Weak form: for all v, q that vanish where values are given,
 ///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
 /// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
 /// Newton's iteration with the exact derivative, from Stokes flow; where that does not lead to
 /// `reynolds`, as on coarse meshes, once more with 0.01 Re (div u, div v) on the left, which is 0
-/// for the exact flow, by steps in the Reynolds number that halve where it fails. Every linear
-/// system is solved directly and checked (SparseDirect). Source: e.g. H. Elman, D. Silvester & A.
-/// Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
+/// for the exact flow, by steps in the Reynolds number that halve where it fails. Every solution of
+/// a linear system is checked (LinearSolver). Source: e.g. H. Elman, D. Silvester & A. Wathen,
+/// Finite Elements and Fast Iterative Solvers (2014), ch. 8.
 ///
 /// Errors in the 2-norm fall with h^(k+1) in u and h^k in p where the solution is smooth (test for
 /// k = 2, 3). Pressure is unbounded in corners where given velocities clash or where the inlet
@@ -93,17 +136,17 @@ class FlowSolver {
   FlowSolver& operator=(FlowSolver&&) = delete;
 
   /// @throws InputError if Newton's iteration finds no steady flow, InternalError from
-  ///         SparseDirect, Interrupted on request.
+  ///         LinearSolver, Interrupted on request.
   void solve(const Monitor& monitor = {});
+  const FlowCosts& costs() const;
 
-  int n_unknowns() const;
-  int n_newton_steps() const;       ///< linear systems solved
-  double largest_residual() const;  ///< worst |b - A x| / |b| among them
+  /// Values at a chart of the lattice, where there is fluid.
+  FlowPoint<dim> at(const Vector<dim>& chart) const;
+  /// Values over the sections at `x`; shears are the mean of both cells where x is an edge.
+  std::vector<FlowSection> sections(const std::vector<double>& x) const;
+  FlowSection section(double x) const { return sections({x}).front(); }
 
-  /// Values at (x, t[, z]) of the box.
-  FlowPoint<dim> at(const Vector<dim>& box) const;
-  /// Values over the section x; shears are the mean of both cells where x is an edge.
-  FlowSection section(double x) const;
+  FlowPiece<dim> piece() const;
 
   struct Errors {
     double velocity = 0.0, pressure = 0.0;
@@ -113,6 +156,7 @@ class FlowSolver {
                 const std::function<double(const Vector<dim>&)>& pressure) const;
 
   struct Discrete;
+  const Discrete& discrete() const { return *discrete_; }
 
  private:
   std::unique_ptr<Discrete> discrete_;

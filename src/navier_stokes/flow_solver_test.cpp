@@ -60,7 +60,8 @@ struct MadeUp {
   FlowSolver<2>::Errors errors(int order, int n) const {
     FlowProblem<2> problem;
     problem.edges = {even(0.0, 1.0, n), even(0.0, 1.0, n)};
-    problem.gap = [](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); };
+    problem.place =
+        below_roof<2>([](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); });
     problem.reynolds = reynolds;
     problem.order = order;
     for (const int side : {SideName::inlet, SideName::floor, SideName::roof}) {
@@ -90,7 +91,7 @@ FlowSolver<2> cavity(double reynolds, int order, int n) {
   for (int i = 0; i <= n; ++i) edges.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * i / n));
   FlowProblem<2> problem;
   problem.edges = {edges, edges};
-  problem.gap = [](double, double) { return 1.0; };
+  problem.place = below_roof<2>([](double, double) { return 1.0; });
   problem.reynolds = reynolds;
   problem.order = order;
   problem.sides[SideName::roof] = {SideCondition::velocity, [](const Vector<2>&) {
@@ -120,7 +121,7 @@ TEST_F(FlowSolverTest, TurnsInACavityAsAnIndependentSolutionDoes) {
 TEST_F(FlowSolverTest, CarriesAParabolaWithoutError) {
   FlowProblem<2> problem;
   problem.edges = {even(-1.0, 2.0, 4), even(0.0, 1.0, 2)};
-  problem.gap = [](double, double) { return 1.0; };
+  problem.place = below_roof<2>([](double, double) { return 1.0; });
   problem.reynolds = 50.0;
   problem.sides[SideName::inlet] = {SideCondition::velocity, [](const Vector<2>& at) {
                                       return Vector<2>{at[1] * (1.0 - at[1]), 0.0};
@@ -142,12 +143,13 @@ TEST_F(FlowSolverTest, CarriesAParabolaWithoutError) {
 TEST_F(FlowSolverTest, PointsLieWhereTheBoxPutsThem) {
   FlowProblem<3> problem;
   problem.edges = {std::vector<double>{0.0, 0.5, 2.0}, {0.0, 0.3, 1.0}, {0.0, 1.0, 1.5, 4.0}};
-  problem.gap = [](double x, double z) { return 1.0 + 0.1 * x + 0.02 * x * z; };
+  const auto gap = [](double x, double z) { return 1.0 + 0.1 * x + 0.02 * x * z; };
+  problem.place = below_roof<3>(gap);
   const FlowSolver<3> solver(problem);
   for (const Vector<3>& box : {Vector<3>{0.1, 0.9, 3.5}, {1.7, 0.2, 1.2}, {2.0, 1.0, 0.0}}) {
     const Vector<3> place = solver.at(box).place;
     EXPECT_NEAR(place[0], box[0], 1e-14);
-    EXPECT_NEAR(place[1], box[1] * problem.gap(box[0], box[2]), 1e-14);
+    EXPECT_NEAR(place[1], box[1] * gap(box[0], box[2]), 1e-14);
     EXPECT_NEAR(place[2], box[2], 1e-14);
   }
 }
@@ -157,7 +159,7 @@ TEST_F(FlowSolverTest, HoldsTheFlowOfADuctAgainstTheExactSeries) {
   const auto problem_with = [&](int n) {
     FlowProblem<3> problem;
     problem.edges = {even(0.0, 3.0, 2), even(0.0, 1.0, n), even(0.0, half_width, 2 * n)};
-    problem.gap = [](double, double) { return 1.0; };
+    problem.place = below_roof<3>([](double, double) { return 1.0; });
     problem.reynolds = 10.0;
     const auto profile = duct_profile(
         problem.edges[2], problem.edges[1], [](double) { return 1.0; }, problem.order);
@@ -188,7 +190,7 @@ TEST_F(FlowSolverTest, HoldsTheFlowOfADuctAgainstTheExactSeries) {
 TEST_F(FlowSolverTest, RefusesElementsItDoesNotHave) {
   FlowProblem<2> problem;
   problem.edges = {even(0.0, 1.0, 2), even(0.0, 1.0, 2)};
-  problem.gap = [](double, double) { return 1.0; };
+  problem.place = below_roof<2>([](double, double) { return 1.0; });
   problem.order = 1;
   EXPECT_THROW(FlowSolver<2>{problem}, InputError);
   problem.order = 2;

@@ -1,14 +1,16 @@
 // manoscope-navier-stokes SHAPE.csv --height H --width W --flow-rate Q: one flow, as JSON.
 //
-// A program of its own: deal.II and MUMPS bring MPI and some 250 libraries, which `manoscope` does
-// not load. `manoscope simulate` starts it.
+// A program of its own: deal.II and PETSc bring MPI and some 250 libraries, which `manoscope` does
+// not load. `manoscope simulate` starts it, alone or under mpirun.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "channel_shape.hpp"
@@ -17,6 +19,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
+#include "processes.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
@@ -84,13 +87,35 @@ SimulatedChannel channel_of(const ChannelShape& shape, const SimulationOptions& 
   return channel;
 }
 
+/// Of this process at its largest.
 double peak_megabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;
 }
 
-int run(const std::vector<std::string>& words) {
+/// MPI looks for a network and starts a daemon even for one process: 0.3 s. What the user has set
+/// stays.
+void make_mpi_start_alone() {
+  for (const char* sign : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"}) {
+    if (std::getenv(sign) != nullptr) return;
+  }
+  for (const auto& [name, value] : {std::pair{"OMPI_MCA_ess_singleton_isolated", "1"},
+                                    {"OMPI_MCA_pml", "ob1"},
+                                    {"OMPI_MCA_btl", "self"}}) {
+    setenv(name, value, 0);
+  }
+}
+
+void print_answer(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) {
+    throw InputError("standard output", "cannot be written",
+                     "Check the disk or the pipe it goes to");
+  }
+}
+
+void run(const std::vector<std::string>& words) {
   const auto start = std::chrono::steady_clock::now();
   const CommandLine line = read_words(words);
   const ChannelShape shape = read_channel_shape(line.shape);
@@ -99,13 +124,11 @@ int run(const std::vector<std::string>& words) {
       simulate(channel_of(shape, line.options), stations, line.options.mesh, line.vtu);
   flow.x += shape.x()[0];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  const std::string text = flow_json(flow, {taken.count(), peak_megabytes()});
-  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-  if (!written || std::fflush(stdout) != 0) {
-    throw InputError("standard output", "cannot be written",
-                     "Check the disk or the pipe it goes to");
-  }
-  return 0;
+  const Processes& processes = Processes::all();
+  const Effort effort{processes.size(), taken.count(), processes.sum(peak_megabytes())};
+  together(processes.comm(), [&] {
+    if (processes.is_lead()) print_answer(flow_json(flow, effort));
+  });
 }
 
 }  // namespace
@@ -125,16 +148,23 @@ int main(int argc, char** argv) {
       return 0;
     }
   }
+  navier_stokes::make_mpi_start_alone();
+  // Faults are the same on every process; one that is not ends the others, too.
+  const auto& processes = navier_stokes::Processes::all();
   try {
-    return navier_stokes::run(words);
+    navier_stokes::run(words);
+    return 0;
   } catch (const InputError& error) {
-    fmt::print("{}", navier_stokes::error_json(error));
-    fmt::print(stderr, "manoscope-navier-stokes: error: {}\n", error.what());
+    if (processes.is_lead()) {
+      fmt::print("{}", navier_stokes::error_json(error));
+      fmt::print(stderr, "manoscope-navier-stokes: error: {}\n", error.what());
+    }
     return kUsersFault;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "manoscope-navier-stokes: out of memory: take fewer cells\n");
   } catch (const std::exception& error) {
     fmt::print(stderr, "manoscope-navier-stokes: fault of the program: {}\n", error.what());
   }
+  if (processes.size() > 1) MPI_Abort(processes.comm(), kOurFault);
   return kOurFault;
 }

@@ -11,22 +11,12 @@
 #include <string>
 
 #include "manoscope/core/atomic_file.hpp"
+#include "processes.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
 
 static_assert(std::endian::native == std::endian::little);
-
-/// Edges with `order` - 1 more between each two.
-std::vector<double> cut(const std::vector<double>& edges, int order) {
-  std::vector<double> result{edges.front()};
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    for (int k = 1; k <= order; ++k) {
-      result.push_back(edges[i - 1] + (edges[i] - edges[i - 1]) * k / order);
-    }
-  }
-  return result;
-}
 
 /// The arrays of a file: their heads, and the bytes behind them.
 class AppendedData {
@@ -49,54 +39,36 @@ class AppendedData {
   std::string bytes_;
 };
 
-}  // namespace
+constexpr const char* kHead =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" "
+    "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
 
 template <int dim>
-void write_vtu(const std::filesystem::path& path, const FlowSolver<dim>& solver,
-               const std::array<std::vector<double>, dim>& edges, int order,
-               const VtuScales& scales) {
-  std::array<std::vector<double>, 3> lines{std::vector<double>{0.0}, {0.0}, {0.0}};
-  for (int axis = 0; axis < dim; ++axis) lines[axis] = cut(edges[axis], order);
-  const auto n_x = static_cast<std::int64_t>(lines[0].size());
-  const auto n_y = static_cast<std::int64_t>(lines[1].size());
-  const auto n_z = static_cast<std::int64_t>(lines[2].size());
-
+std::string piece_text(const FlowPiece<dim>& piece, const VtuScales& scales) {
   std::vector<double> places, velocities, pressures;
-  for (const double z : lines[2]) {
-    for (const double t : lines[1]) {
-      for (const double x : lines[0]) {
-        Vector<dim> box{x, t};
-        if constexpr (dim == 3) box[2] = z;
-        const FlowPoint<dim> point = solver.at(box);
-        for (int axis = 0; axis < 3; ++axis) {
-          places.push_back(axis < dim ? point.place[axis] * scales.length : 0.0);
-          velocities.push_back(axis < dim ? point.velocity[axis] * scales.velocity : 0.0);
-        }
-        pressures.push_back((point.pressure - scales.zero_pressure) * scales.pressure);
-      }
+  for (const FlowPoint<dim>& point : piece.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      places.push_back(axis < dim ? point.place[axis] * scales.length : 0.0);
+      velocities.push_back(axis < dim ? point.velocity[axis] * scales.velocity : 0.0);
     }
+    pressures.push_back((point.pressure - scales.zero_pressure) * scales.pressure);
   }
-
   std::vector<std::int64_t> corners, ends;
-  for (std::int64_t k = 0; k < std::max<std::int64_t>(1, n_z - 1); ++k) {
-    for (std::int64_t j = 0; j + 1 < n_y; ++j) {
-      for (std::int64_t i = 0; i + 1 < n_x; ++i) {
-        for (std::int64_t layer = k; layer < k + dim - 1; ++layer) {
-          const std::int64_t first = (layer * n_y + j) * n_x + i;
-          corners.insert(corners.end(), {first, first + 1, first + n_x + 1, first + n_x});
-        }
-        ends.push_back(static_cast<std::int64_t>(corners.size()));
+  for (const auto& cell : piece.cells) {
+    for (std::size_t layer = 0; layer < cell.size(); layer += 4) {
+      for (const std::size_t k : {0, 1, 3, 2}) {  // VTK goes around
+        corners.push_back(static_cast<std::int64_t>(cell[layer + k]));
       }
     }
+    ends.push_back(static_cast<std::int64_t>(corners.size()));
   }
   constexpr std::uint8_t kQuadrilateral = 9, kHexahedron = 12;
   const std::vector<std::uint8_t> kinds(ends.size(), dim == 3 ? kHexahedron : kQuadrilateral);
 
   AppendedData data;
-  std::string text = fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
-      "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
-      "<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+  std::string text = fmt::format(kHead, "UnstructuredGrid");
+  text += fmt::format(
+      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
       pressures.size(), ends.size());
   text +=
       "<Points>\n" + data.array("type=\"Float64\" Name=\"place\" NumberOfComponents=\"3\"", places);
@@ -107,12 +79,49 @@ void write_vtu(const std::filesystem::path& path, const FlowSolver<dim>& solver,
   text += data.array("type=\"Float64\" Name=\"pressure\"", pressures);
   text += data.array("type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\"", velocities);
   text += "</PointData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-  write_file_atomically(path, text + data.bytes() + "\n</AppendedData>\n</VTKFile>\n");
+  return text + data.bytes() + "\n</AppendedData>\n</VTKFile>\n";
 }
 
-template void write_vtu<2>(const std::filesystem::path&, const FlowSolver<2>&,
-                           const std::array<std::vector<double>, 2>&, int, const VtuScales&);
-template void write_vtu<3>(const std::filesystem::path&, const FlowSolver<3>&,
-                           const std::array<std::vector<double>, 3>&, int, const VtuScales&);
+/// The file that names the pieces of several processes.
+std::string index_text(const std::vector<std::string>& pieces) {
+  std::string text = fmt::format(kHead, "PUnstructuredGrid");
+  text +=
+      "<PUnstructuredGrid GhostLevel=\"0\">\n"
+      "<PPoints>\n<PDataArray type=\"Float64\" Name=\"place\" NumberOfComponents=\"3\"/>\n"
+      "</PPoints>\n<PPointData Scalars=\"pressure\" Vectors=\"velocity\">\n"
+      "<PDataArray type=\"Float64\" Name=\"pressure\"/>\n"
+      "<PDataArray type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\"/>\n"
+      "</PPointData>\n";
+  for (const std::string& piece : pieces) text += fmt::format("<Piece Source=\"{}\"/>\n", piece);
+  return text + "</PUnstructuredGrid>\n</VTKFile>\n";
+}
+
+}  // namespace
+
+template <int dim>
+std::filesystem::path write_vtu(const std::filesystem::path& path, const FlowSolver<dim>& solver,
+                                const VtuScales& scales) {
+  const Processes& processes = Processes::all();
+  const bool alone = processes.size() == 1;
+  const auto piece_name = [&](int rank) {
+    return fmt::format("{}_{}.vtu", path.stem().string(), rank);
+  };
+  const std::filesystem::path index =
+      std::filesystem::path(path).replace_extension(alone ? path.extension() : ".pvtu");
+  together(processes.comm(), [&] {
+    const auto piece = alone ? path : path.parent_path() / piece_name(processes.rank());
+    write_file_atomically(piece, piece_text(solver.piece(), scales));
+    if (alone || !processes.is_lead()) return;
+    std::vector<std::string> pieces;
+    for (int rank = 0; rank < processes.size(); ++rank) pieces.push_back(piece_name(rank));
+    write_file_atomically(index, index_text(pieces));
+  });
+  return index;
+}
+
+template std::filesystem::path write_vtu<2>(const std::filesystem::path&, const FlowSolver<2>&,
+                                            const VtuScales&);
+template std::filesystem::path write_vtu<3>(const std::filesystem::path&, const FlowSolver<3>&,
+                                            const VtuScales&);
 
 }  // namespace manoscope::navier_stokes

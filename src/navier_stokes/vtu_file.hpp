@@ -19,11 +19,12 @@ struct VtuScales {
 /// Writes a solved flow as a VTK unstructured grid (.vtu), in SI, for ParaView and VTK.
 ///
 /// Every cell is cut into `order` parts along each axis, corners hold velocity (m/s) and pressure
-/// (Pa). In three dimensions that is the half z >= 0.
-/// @throws InputError if the file cannot be written.
+/// (Pa). In three dimensions that is the half z >= 0. Of several processes each writes its piece,
+/// NAME_0.vtu, NAME_1.vtu and so on, and the first NAME.pvtu, which names them.
+/// @return the file to open.
+/// @throws InputError if a file cannot be written.
 template <int dim>
-void write_vtu(const std::filesystem::path& path, const FlowSolver<dim>& solver,
-               const std::array<std::vector<double>, dim>& edges, int order,
-               const VtuScales& scales);
+std::filesystem::path write_vtu(const std::filesystem::path& path, const FlowSolver<dim>& solver,
+                                const VtuScales& scales);
 
 }  // namespace manoscope::navier_stokes

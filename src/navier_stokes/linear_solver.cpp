@@ -1,0 +1,119 @@
+#include "linear_solver.hpp"
+
+#include <fmt/format.h>
+
+#include "manoscope/core/error.hpp"
+
+namespace manoscope::navier_stokes {
+namespace {
+
+[[noreturn]] void give_up(const std::string& what) {
+  throw InternalError("linear solver of the flow: " + what);
+}
+
+/// Names of the controls from the MUMPS 5.5 users' guide.
+class DirectSolver final : public LinearSolver {
+ public:
+  using LinearSolver::LinearSolver;
+
+ private:
+  static constexpr int kOrdering = 7, kMetis = 5, kRoom = 14;
+  static constexpr int kRightHandSide = 20, kDistributed = 10;
+
+  void prepare(Mat matrix, bool again) override {
+    constexpr int kTries = 4, kNoRoom = -9;
+    for (int i = 0; i < kTries; ++i) {
+      const int verdict = factorise(matrix, again || i > 0);
+      if (verdict >= 0) return;
+      if (verdict != kNoRoom) {
+        give_up(fmt::format("MUMPS ends with {}; -13 is want of memory", verdict));
+      }
+      room_ *= 2;
+    }
+    give_up("MUMPS does not find room for its factors");
+  }
+
+  /// @return what MUMPS says of it: below 0 it is a fault.
+  int factorise(Mat matrix, bool anew) {
+    PC pc = nullptr;
+    check_petsc(KSPGetPC(ksp(), &pc));
+    if (anew) check_petsc(PCReset(pc));
+    check_petsc(KSPSetOperators(ksp(), matrix, matrix));
+    check_petsc(KSPSetType(ksp(), KSPPREONLY));
+    check_petsc(PCSetType(pc, PCLU));
+    check_petsc(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    check_petsc(PCFactorSetUpMatSolverType(pc));
+    Mat factors = nullptr;
+    check_petsc(PCFactorGetMatrix(pc, &factors));
+    check_petsc(MatMumpsSetIcntl(factors, kOrdering, kMetis));
+    check_petsc(MatMumpsSetIcntl(factors, kRightHandSide, kDistributed));
+    check_petsc(MatMumpsSetIcntl(factors, kRoom, room_));
+    const PetscErrorCode code = PCSetUp(pc);
+    PetscInt verdict = 0;
+    check_petsc(MatMumpsGetInfog(factors, 1, &verdict));
+    if (verdict >= 0) check_petsc(code);
+    return static_cast<int>(verdict);
+  }
+
+  int room_ = 40;  // % of room beside what the analysis expects
+};
+
+}  // namespace
+
+void check_petsc(PetscErrorCode code) {
+  if (code == 0) return;
+  const char* text = nullptr;
+  PetscErrorMessage(code, &text, nullptr);
+  give_up(fmt::format("PETSc ends with {}: {}", static_cast<int>(code), text ? text : ""));
+}
+
+LinearSolver::LinearSolver(MPI_Comm comm) { check_petsc(KSPCreate(comm, &ksp_)); }
+
+LinearSolver::~LinearSolver() {
+  VecDestroy(&rest_);
+  VecDestroy(&step_);
+  KSPDestroy(&ksp_);
+}
+
+void LinearSolver::refine(Mat matrix, Vec right, Vec x) {
+  double size = 0.0, left = 0.0;
+  check_petsc(VecNorm(right, NORM_2, &size));
+  check_petsc(VecSet(x, 0.0));
+  residual_ = 0.0;
+  n_iterations_ = 0;
+  if (size == 0.0) return;
+  check_petsc(VecCopy(right, rest_));
+  constexpr int kRefinements = 2;
+  for (int i = 0; i <= kRefinements; ++i) {
+    check_petsc(KSPSolve(ksp_, rest_, step_));
+    PetscInt n = 0;
+    check_petsc(KSPGetIterationNumber(ksp_, &n));
+    n_iterations_ += static_cast<int>(n);
+    check_petsc(VecAXPY(x, 1.0, step_));
+    check_petsc(MatMult(matrix, x, rest_));
+    check_petsc(VecAYPX(rest_, -1.0, right));
+    check_petsc(VecNorm(rest_, NORM_2, &left));
+    residual_ = left / size;
+    if (residual_ <= kResidual) return;
+  }
+}
+
+void LinearSolver::solve(Mat matrix, Vec right, Vec x) {
+  if (rest_ == nullptr) {
+    check_petsc(VecDuplicate(right, &rest_));
+    check_petsc(VecDuplicate(right, &step_));
+  }
+  // An analysis looks at values, too: one made for others may fail where a new one does not.
+  for (const bool again : {false, true}) {
+    prepare(matrix, again);
+    refine(matrix, right, x);
+    if (residual_ <= kResidual) return;
+  }
+  give_up(fmt::format("the residual stays at {:.2g} of the right-hand side", residual_));
+}
+
+std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm) {
+  return std::make_unique<DirectSolver>(comm);
+}
+
+}  // namespace manoscope::navier_stokes
