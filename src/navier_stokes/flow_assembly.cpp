@@ -76,12 +76,13 @@ class GivenValuesFinder {
     for (unsigned int i = 0; i < local_.size(); ++i) {
       const int component = static_cast<int>(element_.system_to_component_index(i).first);
       if (component == dim || !discrete_.relevant.is_element(local_[i])) continue;
-      if (given_.fixed.is_constrained(local_[i]) || !element_.has_support_on_face(i, face)) continue;
+      if (given_.fixed.is_constrained(local_[i]) || !element_.has_support_on_face(i, face))
+        continue;
       if (condition == SideCondition::slip && component != side / 2) continue;
       given_.fixed.add_line(local_[i]);
       if (condition != SideCondition::velocity) continue;
-      const auto place =
-          discrete_.mesh.mapping().transform_unit_to_real_cell(cell, element_.unit_support_point(i));
+      const auto place = discrete_.mesh.mapping().transform_unit_to_real_cell(
+          cell, element_.unit_support_point(i));
       given_.value(local_[i]) = discrete_.problem.sides[side].velocity(plain(place))[component];
     }
   }
@@ -97,9 +98,9 @@ class GivenValuesFinder {
   /// Scales the given velocities so that `wanted` flows in.
   void scale_inlet(double wanted) {
     const dealii::QGauss<dim - 1> quadrature(discrete_.problem.order + 1);
-    dealii::FEFaceValues<dim> values(discrete_.mesh.mapping(), discrete_.velocity_element, quadrature,
-                                     dealii::update_values | dealii::update_JxW_values |
-                                         dealii::update_normal_vectors);
+    dealii::FEFaceValues<dim> values(
+        discrete_.mesh.mapping(), discrete_.velocity_element, quadrature,
+        dealii::update_values | dealii::update_JxW_values | dealii::update_normal_vectors);
     double flow = 0.0;
     for_faces([&](const auto& cell, unsigned int face, int side) {
       if (!cell->is_locally_owned()) return;

@@ -43,6 +43,7 @@ class FlowAssembler {
 
   /// Weight of the grad-div term over the Reynolds number.
   void set_grad_div(double weight) { grad_div_ = weight; }
+  double grad_div() const { return grad_div_; }
   /// The derivative at the state and minus the residual there.
   void assemble(double reynolds);
 

@@ -247,8 +247,8 @@ typename FlowSolver<dim>::Errors FlowSolver<dim>::errors(
   dealii::FEValues<dim> of_velocity(
       discrete_->mesh.mapping(), discrete_->velocity_element, quadrature,
       dealii::update_values | dealii::update_JxW_values | dealii::update_quadrature_points);
-  dealii::FEValues<dim> of_pressure(discrete_->mesh.mapping(), discrete_->pressure_element, quadrature,
-                                    dealii::update_values);
+  dealii::FEValues<dim> of_pressure(discrete_->mesh.mapping(), discrete_->pressure_element,
+                                    quadrature, dealii::update_values);
   std::vector<typename Discrete::DofIndex> indices(discrete_->element.n_dofs_per_cell());
   double volume = 0.0, u_square = 0.0, p_square = 0.0, p_sum = 0.0;
   for (const auto& cell : discrete_->dofs.active_cell_iterators()) {

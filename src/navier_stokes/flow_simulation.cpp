@@ -131,12 +131,14 @@ std::function<Vector<dim>(const Vector<dim>&)> inlet_velocity(const SimulatedCha
 }
 
 template <int dim>
-FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells, int order) {
+FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells,
+                            const MeshOptions& mesh) {
   FlowProblem<dim> problem;
   problem.edges = edges<dim>(given, cells);
   problem.place = below_roof<dim>(ScaledGap(given, dim));
   problem.reynolds = Scales(given).reynolds;
-  problem.order = order;
+  problem.order = mesh.order;
+  problem.solver = mesh.solver == "iterative" ? SolverKind::iterative : SolverKind::direct;
   problem.sides[SideName::inlet] = {SideCondition::velocity, inlet_velocity<dim>(given, problem)};
   problem.sides[SideName::outlet].condition = SideCondition::open;
   problem.inlet_flow = 1.0;
@@ -199,13 +201,13 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
   SimulatedFlow result;
   Readings coarse_readings;
   {
-    FlowSolver<dim> coarse(problem_of<dim>(given, fine.coarser(), mesh.order));
+    FlowSolver<dim> coarse(problem_of<dim>(given, fine.coarser(), mesh));
     coarse.solve(monitor);
     coarse_readings = read(coarse, given, stations);
     result.costs = coarse.costs();
   }
   monitor.report("flow on the coarser mesh", 1.0);
-  FlowSolver<dim> solver(problem_of<dim>(given, fine, mesh.order));
+  FlowSolver<dim> solver(problem_of<dim>(given, fine, mesh));
   solver.solve(monitor);
   monitor.report("flow on the finer mesh", 1.0);
   const Readings readings = read(solver, given, stations);

@@ -3,12 +3,12 @@
 #include <functional>
 #include <string>
 
+#include "flow_solver.hpp"
 #include "manoscope/core/arrays.hpp"
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/core/units.hpp"
 #include "manoscope/flow/channel.hpp"
 #include "manoscope/flow/marching.hpp"
-#include "flow_solver.hpp"
 #include "manoscope/flow/roof.hpp"
 #include "simulation_options.hpp"
 

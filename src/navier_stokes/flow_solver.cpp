@@ -8,9 +8,11 @@
 
 #include <deal.II/dofs/dof_tools.h>
 
+#include "block_solver.hpp"
 #include "discrete_flow.hpp"
 #include "flow_assembly.hpp"
 #include "manoscope/core/error.hpp"
+#include "pressure_operators.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
@@ -49,13 +51,21 @@ class Newton {
         monitor_(monitor),
         given_(find_given_values<dim>(discrete)),
         assembler_(discrete, given_.fixed),
-        solver_(direct_solver(discrete.processes.comm())),
         change_(discrete.owned, discrete.processes.comm()),
         is_pressure_(discrete.owned.n_elements(), 0) {
     for (const int dof : assembler_.blocks().pressure) {
       is_pressure_[discrete.owned.index_within_set(dof)] = 1;
     }
     discrete.costs.n_unknowns = assembler_.n_unknowns();
+    const MPI_Comm comm = discrete.processes.comm();
+    if (discrete.problem.solver == SolverKind::iterative) {
+      auto blocks = std::make_unique<BlockSolver>(comm, assembler_.blocks());
+      blocks_ = blocks.get();
+      solver_ = std::move(blocks);
+      pressure_operators_.emplace(discrete);
+    } else {
+      solver_ = direct_solver(comm);
+    }
   }
 
   void set_grad_div(double weight) {
@@ -103,6 +113,12 @@ class Newton {
   double step(double reynolds) {
     together(discrete_.processes.comm(), [&] { monitor_.checkpoint(); });
     assembler_.assemble(reynolds);
+    if (pressure_operators_) {
+      pressure_operators_->assemble(reynolds);
+      blocks_->set_pressure_operators(pressure_operators_->mass(), pressure_operators_->stiffness(),
+                                      pressure_operators_->transport(),
+                                      assembler_.grad_div() * reynolds);
+    }
     solver_->solve(assembler_.matrix(), assembler_.right(), change_);
     FlowCosts& costs = discrete_.costs;
     costs.largest_residual = std::max(costs.largest_residual, solver_->residual());
@@ -140,6 +156,8 @@ class Newton {
   GivenValues<dim> given_;
   FlowAssembler<dim> assembler_;
   std::unique_ptr<LinearSolver> solver_;
+  BlockSolver* blocks_ = nullptr;  ///< solver_, where it is one
+  std::optional<PressureOperators<dim>> pressure_operators_;
   dealii::PETScWrappers::MPI::Vector change_;
   std::vector<char> is_pressure_;  ///< (owned)
 };

@@ -51,7 +51,7 @@ struct FlowProblem {
   /// Cells without fluid, by the middle of their chart; their faces are walls. Empty: none.
   std::function<bool(const Vector<dim>& chart)> solid;
   double reynolds = 0.0;
-  int order = 2;  ///< of the velocities, one more than that of p; 2 to 4
+  int order = 2;                         ///< of the velocities, one more than that of p; 2 to 4
   std::array<Side<dim>, 2 * dim> sides;  ///< of the lattice
   /// Walls slip upstream of this x; the gap must be constant there.
   double slip_before = -std::numeric_limits<double>::infinity();
@@ -61,7 +61,8 @@ struct FlowProblem {
   SolverKind solver = SolverKind::direct;
 };
 
-/// Charts (x, t[, z]) below a roof: y = t h(x, z) up to the roof at t = 1, and at unit steep beyond.
+/// Charts (x, t[, z]) below a roof: y = t h(x, z) up to the roof at t = 1, and at unit steep
+/// beyond.
 /// @param gap  h(x, z) > 0; z is 0 in two dimensions.
 template <int dim>
 std::function<Vector<dim>(const Vector<dim>&)> below_roof(

@@ -60,8 +60,7 @@ struct MadeUp {
   FlowSolver<2>::Errors errors(int order, int n) const {
     FlowProblem<2> problem;
     problem.edges = {even(0.0, 1.0, n), even(0.0, 1.0, n)};
-    problem.place =
-        below_roof<2>([](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); });
+    problem.place = below_roof<2>([](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); });
     problem.reynolds = reynolds;
     problem.order = order;
     for (const int side : {SideName::inlet, SideName::floor, SideName::roof}) {

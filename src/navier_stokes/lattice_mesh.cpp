@@ -204,8 +204,7 @@ void LatticeMesh<dim>::build(MPI_Comm comm, const Shape& shape) {
 
     dealii::TriangulationDescription::CellData<dim> info;
     info.id = dealii::CellId(id, std::vector<std::uint8_t>()).template to_binary<dim>();
-    const auto owner =
-        std::upper_bound(first_of_rank_.begin(), first_of_rank_.end(), index[0]) - 1;
+    const auto owner = std::upper_bound(first_of_rank_.begin(), first_of_rank_.end(), index[0]) - 1;
     info.subdomain_id = static_cast<dealii::types::subdomain_id>(owner - first_of_rank_.begin());
     info.level_subdomain_id = info.subdomain_id;
     info.manifold_id = dealii::numbers::flat_manifold_id;
@@ -238,10 +237,9 @@ void LatticeMesh<dim>::check_cells() const {
     for (const unsigned int q : values.quadrature_point_indices()) {
       if (values.jacobian(q).determinant() > 0.0) continue;
       const auto& place = values.quadrature_point(q);
-      throw InputError(kWhere,
-                       fmt::format("the cells fold at x = {:.4g}, y = {:.4g} gaps", place[0],
-                                   place[1]),
-                       "The wall turns too sharply for them: take more cells along the channel");
+      throw InputError(
+          kWhere, fmt::format("the cells fold at x = {:.4g}, y = {:.4g} gaps", place[0], place[1]),
+          "The wall turns too sharply for them: take more cells along the channel");
     }
   }
 }
@@ -254,8 +252,7 @@ typename LatticeMesh<dim>::Located LatticeMesh<dim>::locate(const Point& chart) 
     const auto above = std::upper_bound(e.begin(), e.end(), chart[axis]);
     const int index = std::clamp(static_cast<int>(above - e.begin()) - 1, 0, n_cells(axis) - 1);
     located.index[axis] = index;
-    located.unit[axis] =
-        std::clamp((chart[axis] - e[index]) / (e[index + 1] - e[index]), 0.0, 1.0);
+    located.unit[axis] = std::clamp((chart[axis] - e[index]) / (e[index + 1] - e[index]), 0.0, 1.0);
   }
   return located;
 }

@@ -35,7 +35,7 @@ class LatticeMesh {
   static constexpr int elsewhere = 2 * dim + 1;  ///< faces to cells that no process nearby holds
 
   struct Shape {
-    Edges<dim> edges;  ///< ascending, at least two each
+    Edges<dim> edges;                                ///< ascending, at least two each
     std::function<bool(const Point& centre)> solid;  ///< cells without fluid; empty: none
     std::function<Point(const Point& chart)> place;  ///< asked from several threads at once
   };
@@ -76,7 +76,7 @@ class LatticeMesh {
   std::array<int, 2> own_{}, held_{};
   Triangulation triangulation_;
   dealii::MappingQCache<dim> mapping_;
-  std::vector<int> triangulation_index_;  ///< (held lattice cells), -1: solid
+  std::vector<int> triangulation_index_;       ///< (held lattice cells), -1: solid
   std::vector<CellIndex<dim>> lattice_index_;  ///< (cells of the triangulation)
 };
 

@@ -33,7 +33,7 @@ class LinearSolver {
   ///         too large.
   void solve(Mat matrix, Vec right, Vec x);
 
-  double residual() const { return residual_; }  ///< |b - A x| / |b| of the last solution
+  double residual() const { return residual_; }       ///< |b - A x| / |b| of the last solution
   int n_iterations() const { return n_iterations_; }  ///< of the last solution
 
  protected:

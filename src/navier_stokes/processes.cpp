@@ -37,9 +37,12 @@ Report watch(const std::function<void()>& work) {
 
 [[noreturn]] void rethrow(const Report& report) {
   switch (report.fault) {
-    case Fault::input: throw InputError(report.words[0], report.words[1], report.words[2]);
-    case Fault::interrupted: throw Interrupted();
-    default: throw InternalError(report.words[0]);
+    case Fault::input:
+      throw InputError(report.words[0], report.words[1], report.words[2]);
+    case Fault::interrupted:
+      throw Interrupted();
+    default:
+      throw InternalError(report.words[0]);
   }
 }
 

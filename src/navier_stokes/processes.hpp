@@ -30,8 +30,8 @@ class Processes {
   int rank_ = 0, size_ = 1;
 };
 
-/// Does the work of each process of `comm`; where it throws on one, all throw what the first of them
-/// met. The work itself must not wait for other processes.
+/// Does the work of each process of `comm`; where it throws on one, all throw what the first of
+/// them met. The work itself must not wait for other processes.
 void together(MPI_Comm comm, const std::function<void()>& work);
 
 }  // namespace manoscope::navier_stokes

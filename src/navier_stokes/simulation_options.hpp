@@ -15,6 +15,7 @@ struct MeshOptions {
   int cells_up = 0;      ///< from floor to roof; 0: 8 in two dimensions, 4 in three
   int cells_across = 0;  ///< of half the width; 0: 8
   double tolerance = 5e-3;
+  std::string solver = "auto";  ///< direct, iterative, or by the number of unknowns
 
   /// @throws InputError naming the first option out of range.
   void validate() const;
@@ -60,6 +61,8 @@ struct SimulationOptions {
     visit("cells-across", mesh.cells_across, "cells over half the width; 0 chooses");
     visit("tolerance", mesh.tolerance,
           "numerical uncertainty of the drop, of the drop, up to which it counts as converged");
+    visit("solver", mesh.solver,
+          "linear systems: direct, iterative, or auto by the number of cells");
     visit("stations", stations, "number of stations of the result, evenly along the channel");
   }
   /// @throws InputError naming the first option that is missing or out of range.

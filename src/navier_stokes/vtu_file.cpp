@@ -67,9 +67,8 @@ std::string piece_text(const FlowPiece<dim>& piece, const VtuScales& scales) {
 
   AppendedData data;
   std::string text = fmt::format(kHead, "UnstructuredGrid");
-  text += fmt::format(
-      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      pressures.size(), ends.size());
+  text += fmt::format("<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+                      pressures.size(), ends.size());
   text +=
       "<Points>\n" + data.array("type=\"Float64\" Name=\"place\" NumberOfComponents=\"3\"", places);
   text += "</Points>\n<Cells>\n" + data.array("type=\"Int64\" Name=\"connectivity\"", corners);
