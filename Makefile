@@ -50,8 +50,8 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench docs accuracy coverage verdicts goals planning flow-models simulation simulation-check \
-        web web-check check format format-check layers \
+.PHONY: all demo test bench bench-flow docs accuracy coverage verdicts goals planning flow-models \
+        simulation simulation-check web web-check check format format-check layers \
         scripts tidy tidy-changed asan asan-changed asan-all fuzz fuzz-coverage clean \
         install-packages help
 
@@ -73,6 +73,14 @@ bench: ## time the program against the same work in numpy
 	@$(install) build libraries figures bench
 	@$(configure) $(without_tests) -DMANOSCOPE_BENCH=ON
 	@cmake --build $(BUILD) --target bench -j $(JOBS)
+
+bench-flow: ## time the Navier-Stokes solver against FreeFem++ and dolfinx; installs them and deal.II
+	@$(install) build libraries navier-stokes bench-flow
+	@$(configure) $(without_tests)
+	@cmake --build $(BUILD) -j $(JOBS) --target manoscope-navier-stokes
+	@mkdir -p $(BUILD)/bench
+	@/usr/bin/python3 bench/compare_flow.py --program $(BUILD)/manoscope-navier-stokes \
+	  --json $(BUILD)/bench/flow.json
 
 docs: all ## check links and commands of the documentation
 	@tools/check_docs.py --program $(BUILD)/manoscope
