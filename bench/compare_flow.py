@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Times one plane flow, the bulged gap of README.md, with manoscope-navier-stokes, FreeFem++ and dolfinx.
 
-Whole processes in turn on one core, each on the coarsest mesh that holds the drop within 0.1 % and
-on which every finer one does (--search shows the choice). Who is not installed is left out; a drop
-that is wrong ends the run with exit code 1.
+Whole processes in turn on one core, each on the fastest mesh that holds the drop within 0.1 % and
+beyond which every finer one does (--search shows the choice). Who is not installed is left out; a
+drop that is wrong ends the run with exit code 1.
 """
 import argparse
 import json
