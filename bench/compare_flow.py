@@ -155,12 +155,14 @@ def compare(solvers, repetitions, folder):
 def print_table(table, repetitions):
     print(f"Drop of the bulged gap at 70 mL/min to {100 * TOLERANCE:g} %: whole processes, one core; "
           f"median of {repetitions}")
+    print("wall /, cpu /: over manoscope's")
     print(f"{'':26}{'element':>8}{'cells':>9}{'unknowns':>10}{'error %':>9}{'wall s':>8}{'cpu s':>8}"
-          f"{'peak MB':>9}{'/ ours':>8}")
+          f"{'peak MB':>9}{'wall /':>8}{'cpu /':>7}")
     ours = table.get("manoscope")
     for name, row in table.items():
         cells = "{} x {}".format(*row["cells"]) if row["cells"] else ""
-        ratio = f"{row['wall_s'] / ours['wall_s']:8.2f}" if ours else ""
+        ratio = "".join(f"{row[key] / ours[key]:{width}.2f}" for key, width in
+                        (("wall_s", 8), ("cpu_s", 7))) if ours else ""
         print(f"{name:26}{row['element']:>8}{cells:>9}{row['unknowns']:10.0f}"
               f"{100 * row['error']:9.3f}{row['wall_s']:8.3f}{row['cpu_s']:8.3f}"
               f"{row['peak_MB']:9.0f}{ratio}")
