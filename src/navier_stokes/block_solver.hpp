@@ -6,14 +6,17 @@ namespace manoscope::navier_stokes {
 
 /// Flexible GMRES with a block-triangular preconditioner, for systems too large to factorise.
 ///
-///   [F  B^T]        F: the momentum equation, one cycle of algebraic multigrid (BoomerAMG)
+///   [F  B^T]        F: the momentum equation, incomplete factors of level 1, with overlap
 ///   [B   0 ]        S = -B F^-1 B^T: pressure convection-diffusion, S^-1 ~ -(1 + K^-1 T) M^-1
 ///
-/// with mass M, transport T and stiffness K of PressureOperators, K^-1 a cycle of multigrid, too.
-/// Source: H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014),
-/// ch. 9. The drag of the walls in T is ours: it is what Cahouet & Chabard (Int. J. Numer. Methods
-/// Fluids 8 (1988) 869) do for drag by unsteadiness, and makes the number of steps independent of
-/// the length of the channel (test).
+/// with mass M, transport T and stiffness K of PressureOperators, K^-1 a cycle of algebraic
+/// multigrid. Source: H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast Iterative
+/// Solvers (2014), ch. 9. The drag of the walls in T is ours: it is what Cahouet & Chabard (Int. J.
+/// Numer. Methods Fluids 8 (1988) 869) do for drag by unsteadiness, and keeps the number of steps
+/// from growing with the length of the channel. Channels are a few cells wide and high: factors of
+/// level 1 act on F as its inverse does, where a multigrid cycle stalls on its convection.
+///
+/// Validity: with an open side and the grad-div term, whose weight the number of steps lives on.
 class BlockSolver final : public LinearSolver {
  public:
   BlockSolver(MPI_Comm comm, const FlowBlocks& blocks);

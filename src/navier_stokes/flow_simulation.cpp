@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "duct_profile.hpp"
 #include "flow_mesh.hpp"
@@ -130,6 +131,36 @@ std::function<Vector<dim>(const Vector<dim>&)> inlet_velocity(const SimulatedCha
   }
 }
 
+/// Factors of a plane flow grow hardly faster than its unknowns; those of some 100,000 in three
+/// dimensions take 4 GB.
+SolverKind solver_of(const MeshOptions& mesh, const Cells& cells) {
+  constexpr std::int64_t kMostCells = 5000;
+  const std::int64_t n = std::int64_t{1} * cells.along * cells.up * cells.across;
+  const bool large = mesh.dim == 3 && n > kMostCells;
+  return mesh.solver == "iterative" || (mesh.solver == "auto" && large) ? SolverKind::iterative
+                                                                        : SolverKind::direct;
+}
+
+/// Flow between plates as far apart as the gap is at each place, which carries `flow` through every
+/// section: u = 6 t (1 - t) flow h^2 / (integral of h^3 across), along lines of constant t.
+template <int dim>
+Vector<dim> near_flow(const ScaledGap& gap, const std::vector<double>& z_edges, double flow,
+                      const Vector<dim>& chart) {
+  const double x = chart[0], t = chart[1];
+  double h = gap(x, 0.0), conductance = h * h * h;
+  if constexpr (dim == 3) {
+    h = gap(x, chart[2]);
+    conductance = 0.0;
+    for (std::size_t i = 1; i < z_edges.size(); ++i) {
+      const double middle = gap(x, 0.5 * (z_edges[i - 1] + z_edges[i]));
+      conductance += (z_edges[i] - z_edges[i - 1]) * middle * middle * middle;
+    }
+  }
+  Vector<dim> velocity{};
+  velocity[0] = 6.0 * t * (1.0 - t) * flow * h * h / conductance;
+  return velocity;
+}
+
 template <int dim>
 FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells,
                             const MeshOptions& mesh) {
@@ -138,7 +169,7 @@ FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells,
   problem.place = below_roof<dim>(ScaledGap(given, dim));
   problem.reynolds = Scales(given).reynolds;
   problem.order = mesh.order;
-  problem.solver = mesh.solver == "iterative" ? SolverKind::iterative : SolverKind::direct;
+  problem.solver = solver_of(mesh, cells);
   problem.sides[SideName::inlet] = {SideCondition::velocity, inlet_velocity<dim>(given, problem)};
   problem.sides[SideName::outlet].condition = SideCondition::open;
   problem.inlet_flow = 1.0;
@@ -147,6 +178,10 @@ FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells,
     problem.inlet_flow = 0.5 * given.channel.width / given.channel.height;
   }
   if (given.lead_in_slips) problem.slip_before = 0.0;
+  problem.start = [gap = ScaledGap(given, dim), z = problem.edges[dim - 1],
+                   flow = *problem.inlet_flow](const Vector<dim>& chart) {
+    return near_flow<dim>(gap, z, flow, chart);
+  };
   return problem;
 }
 
@@ -196,19 +231,22 @@ FlowCosts together(const FlowCosts& coarse, const FlowCosts& fine) {
 
 template <int dim>
 SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
-                          const MeshOptions& mesh, const std::string& vtu, const Monitor& monitor) {
+                          const MeshOptions& mesh, const SimulationFiles& files,
+                          const Monitor& monitor) {
   const Cells fine = cells_of(given, mesh);
+  std::filesystem::path coarse_checkpoint = files.checkpoint;
+  if (!coarse_checkpoint.empty()) coarse_checkpoint += ".coarse";
   SimulatedFlow result;
   Readings coarse_readings;
   {
     FlowSolver<dim> coarse(problem_of<dim>(given, fine.coarser(), mesh));
-    coarse.solve(monitor);
+    coarse.solve(monitor, coarse_checkpoint);
     coarse_readings = read(coarse, given, stations);
     result.costs = coarse.costs();
   }
   monitor.report("flow on the coarser mesh", 1.0);
   FlowSolver<dim> solver(problem_of<dim>(given, fine, mesh));
-  solver.solve(monitor);
+  solver.solve(monitor, files.checkpoint);
   monitor.report("flow on the finer mesh", 1.0);
   const Readings readings = read(solver, given, stations);
 
@@ -235,10 +273,10 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
   result.drop_uncertainty = kUncertainty * std::abs(readings.drop - coarse_readings.drop);
   result.converged = result.drop_uncertainty <= mesh.tolerance * std::abs(result.drop);
   result.costs = together(result.costs, solver.costs());
-  if (!vtu.empty()) {
+  if (!files.vtu.empty()) {
     const Scales scales(given);
     const double outlet = solver.section(given.channel.length.si() / scales.length).mean_pressure;
-    write_vtu<dim>(vtu, solver, {scales.length, scales.velocity, scales.pressure, outlet});
+    write_vtu<dim>(files.vtu, solver, {scales.length, scales.velocity, scales.pressure, outlet});
   }
   return result;
 }
@@ -246,10 +284,11 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
 }  // namespace
 
 SimulatedFlow simulate(const SimulatedChannel& channel, const Array1& stations,
-                       const MeshOptions& mesh, const std::string& vtu, const Monitor& monitor) {
+                       const MeshOptions& mesh, const SimulationFiles& files,
+                       const Monitor& monitor) {
   check(channel, stations, mesh);
-  return mesh.dim == 2 ? simulate_in<2>(channel, stations, mesh, vtu, monitor)
-                       : simulate_in<3>(channel, stations, mesh, vtu, monitor);
+  return mesh.dim == 2 ? simulate_in<2>(channel, stations, mesh, files, monitor)
+                       : simulate_in<3>(channel, stations, mesh, files, monitor);
 }
 
 }  // namespace manoscope::navier_stokes

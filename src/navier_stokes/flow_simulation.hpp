@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -47,6 +48,14 @@ struct SimulatedFlow {
   FlowCosts costs;                ///< of both meshes; unknowns of the finer
 };
 
+/// Files beside the answer; "" none.
+struct SimulationFiles {
+  std::filesystem::path vtu;  ///< the finer mesh's velocity and pressure for ParaView
+  /// Where a run that was stopped goes on, with ".coarse" behind it for the coarser mesh; both are
+  /// removed at the end.
+  std::filesystem::path checkpoint;
+};
+
 /// Solves the steady laminar flow of an incompressible fluid on two meshes.
 ///
 /// FlowSolver on a mesh of the cells asked for, and on one with two thirds of them along each axis.
@@ -66,10 +75,10 @@ struct SimulatedFlow {
 /// depend on the mesh, as their uncertainties show; the section mean is finite.
 ///
 /// @param stations  (n) x, m, in [0, length].
-/// @param vtu       where to write the fine mesh's velocity and pressure for ParaView; "" nowhere.
+/// @param files     what else it writes.
 /// @throws InputError for what is out of range, a gap that closes, or if no steady flow is found.
 SimulatedFlow simulate(const SimulatedChannel& channel, const Array1& stations,
-                       const MeshOptions& mesh, const std::string& vtu = "",
+                       const MeshOptions& mesh, const SimulationFiles& files = {},
                        const Monitor& monitor = {});
 
 }  // namespace manoscope::navier_stokes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -58,6 +59,8 @@ struct FlowProblem {
   /// What flows in where velocities are given, which are scaled to it, in U L^(dim - 1).
   std::optional<double> inlet_flow;
   std::function<Vector<dim>(const Vector<dim>& place)> force;  ///< f; empty: none
+  /// A velocity near the flow's, which the iteration starts from; empty: that of Stokes flow.
+  std::function<Vector<dim>(const Vector<dim>& chart)> start;
   SolverKind solver = SolverKind::direct;
 };
 
@@ -118,11 +121,12 @@ struct FlowSection {
 /// Weak form: for all v, q that vanish where values are given,
 ///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
 /// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
-/// Newton's iteration with the exact derivative, from Stokes flow; where that does not lead to
-/// `reynolds`, as on coarse meshes, once more with 0.01 Re (div u, div v) on the left, which is 0
-/// for the exact flow, by steps in the Reynolds number that halve where it fails. Every solution of
-/// a linear system is checked (LinearSolver). Source: e.g. H. Elman, D. Silvester & A. Wathen,
-/// Finite Elements and Fast Iterative Solvers (2014), ch. 8.
+/// Newton's iteration with the exact derivative, from `start`, then from Stokes flow; where neither
+/// leads to `reynolds`, as on coarse meshes, once more with 0.01 Re (div u, div v) on the left,
+/// which is 0 for the exact flow, by steps in the Reynolds number that halve where it fails.
+/// SolverKind::iterative has 0.1 Re of that term from the beginning: its preconditioner lives on
+/// it. Every solution of a linear system is checked (LinearSolver). Source: e.g. H. Elman, D.
+/// Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
 ///
 /// Errors in the 2-norm fall with h^(k+1) in u and h^k in p where the solution is smooth (test for
 /// k = 2, 3). Pressure is unbounded in corners where given velocities clash or where the inlet
@@ -136,9 +140,11 @@ class FlowSolver {
   FlowSolver(FlowSolver&&) noexcept;
   FlowSolver& operator=(FlowSolver&&) = delete;
 
-  /// @throws InputError if Newton's iteration finds no steady flow, InternalError from
-  ///         LinearSolver, Interrupted on request.
-  void solve(const Monitor& monitor = {});
+  /// @param checkpoint  file that keeps the state after every step, and from which a solution that
+  ///                    was stopped goes on; "" none. What is in it of another problem is replaced.
+  /// @throws InputError if Newton's iteration finds no steady flow or the checkpoint cannot be
+  ///         written, InternalError from LinearSolver, Interrupted on request.
+  void solve(const Monitor& monitor = {}, const std::filesystem::path& checkpoint = {});
   const FlowCosts& costs() const;
 
   /// Values at a chart of the lattice, where there is fluid.

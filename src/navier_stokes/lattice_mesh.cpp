@@ -276,6 +276,19 @@ CellIndex<dim> LatticeMesh<dim>::index_of(
   return lattice_index_[static_cast<std::size_t>(cell->index())];
 }
 
+template <int dim>
+typename LatticeMesh<dim>::Point LatticeMesh<dim>::chart(
+    const typename dealii::Triangulation<dim>::cell_iterator& cell,
+    const dealii::Point<dim>& unit) const {
+  const CellIndex<dim> index = index_of(cell);
+  Point chart;
+  for (int axis = 0; axis < dim; ++axis) {
+    const double low = edges_[axis][index[axis]], high = edges_[axis][index[axis] + 1];
+    chart[axis] = low + unit[axis] * (high - low);
+  }
+  return chart;
+}
+
 template class LatticeMesh<2>;
 template class LatticeMesh<3>;
 

@@ -61,6 +61,8 @@ class LatticeMesh {
   /// The cell of a lattice index; none where it is solid or belongs to another process.
   std::optional<Cell> own_cell(const dealii::DoFHandler<dim>& dofs,
                                const CellIndex<dim>& index) const;
+  Point chart(const typename dealii::Triangulation<dim>::cell_iterator& cell,
+              const dealii::Point<dim>& unit) const;
   CellIndex<dim> index_of(const typename dealii::Triangulation<dim>::cell_iterator& cell) const;
 
  private:

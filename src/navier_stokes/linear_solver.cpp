@@ -67,7 +67,9 @@ void check_petsc(PetscErrorCode code) {
   give_up(fmt::format("PETSc ends with {}: {}", static_cast<int>(code), text ? text : ""));
 }
 
-LinearSolver::LinearSolver(MPI_Comm comm) { check_petsc(KSPCreate(comm, &ksp_)); }
+LinearSolver::LinearSolver(MPI_Comm comm, double tolerance) : tolerance_(tolerance) {
+  check_petsc(KSPCreate(comm, &ksp_));
+}
 
 LinearSolver::~LinearSolver() {
   VecDestroy(&rest_);
@@ -94,7 +96,7 @@ void LinearSolver::refine(Mat matrix, Vec right, Vec x) {
     check_petsc(VecAYPX(rest_, -1.0, right));
     check_petsc(VecNorm(rest_, NORM_2, &left));
     residual_ = left / size;
-    if (residual_ <= kResidual) return;
+    if (residual_ <= tolerance_) return;
   }
 }
 
@@ -107,13 +109,13 @@ void LinearSolver::solve(Mat matrix, Vec right, Vec x) {
   for (const bool again : {false, true}) {
     prepare(matrix, again);
     refine(matrix, right, x);
-    if (residual_ <= kResidual) return;
+    if (residual_ <= tolerance_) return;
   }
   give_up(fmt::format("the residual stays at {:.2g} of the right-hand side", residual_));
 }
 
-std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm) {
-  return std::make_unique<DirectSolver>(comm);
+std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm, double tolerance) {
+  return std::make_unique<DirectSolver>(comm, tolerance);
 }
 
 }  // namespace manoscope::navier_stokes

@@ -16,14 +16,12 @@ struct FlowBlocks {
 
 /// Solves the indefinite systems of a flow, on all processes, and checks every answer.
 ///
-/// A solution counts where |b - A x| <= kResidual |b| in the 2-norm, after at most two steps of
+/// A solution counts where |b - A x| <= tolerance |b| in the 2-norm, after at most two steps of
 /// refinement: the libraries' own verdict is no proof (UMFPACK 5.7 has called a solution of a
 /// three-dimensional Stokes matrix good whose residual was 87 |b|).
 class LinearSolver {
  public:
-  static constexpr double kResidual = 1e-9;
-
-  explicit LinearSolver(MPI_Comm comm);
+  LinearSolver(MPI_Comm comm, double tolerance);
   virtual ~LinearSolver();
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
@@ -46,13 +44,13 @@ class LinearSolver {
 
   KSP ksp_ = nullptr;
   Vec rest_ = nullptr, step_ = nullptr;
-  double residual_ = 0.0;
+  double tolerance_, residual_ = 0.0;
   int n_iterations_ = 0;
 };
 
 /// MUMPS through PETSc. Source: P. R. Amestoy, I. S. Duff, J. Koster & J.-Y. L'Excellent, SIAM J.
 /// Matrix Anal. Appl. 23 (2001) 15.
-std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm);
+std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm, double tolerance = 1e-9);
 
 /// Throws InternalError where a call of PETSc failed.
 void check_petsc(PetscErrorCode code);

@@ -25,7 +25,8 @@ namespace manoscope::navier_stokes {
 namespace {
 
 struct CommandLine {
-  std::string shape, vtu;
+  std::string shape;
+  SimulationFiles files;
   SimulationOptions options;
 };
 
@@ -35,7 +36,8 @@ void help() {
       "VALUE]...\n\n"
       "Steady laminar flow below the wall whose deflection SHAPE tells (columns x, zeta), as "
       "JSON.\n"
-      "  --vtu FILE  writes velocity and pressure for ParaView\n");
+      "  --vtu FILE         writes velocity and pressure for ParaView\n"
+      "  --checkpoint FILE  keeps the state there, and goes on from it\n");
   for (const OptionInfo& option : list_options(SimulationOptions{})) {
     fmt::print("  --{} {}: {} [{}]\n", option.name, option.kind, option.help, option.value);
   }
@@ -55,7 +57,9 @@ CommandLine read_words(const std::vector<std::string>& words) {
     if (i + 1 == words.size()) throw InputError(word, "has no value", "Give one behind it");
     const std::string& value = words[++i];
     if (word == "--vtu") {
-      line.vtu = value;
+      line.files.vtu = value;
+    } else if (word == "--checkpoint") {
+      line.files.checkpoint = value;
     } else {
       set_option(line.options, word.substr(2), value, word);
     }
@@ -117,17 +121,21 @@ void print_answer(const std::string& text) {
 
 void run(const std::vector<std::string>& words) {
   const auto start = std::chrono::steady_clock::now();
-  const CommandLine line = read_words(words);
+  CommandLine line = read_words(words);
   const ChannelShape shape = read_channel_shape(line.shape);
   const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, shape.length());
   SimulatedFlow flow =
-      simulate(channel_of(shape, line.options), stations, line.options.mesh, line.vtu);
+      simulate(channel_of(shape, line.options), stations, line.options.mesh, line.files);
   flow.x += shape.x()[0];
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const Processes& processes = Processes::all();
   const Effort effort{processes.size(), taken.count(), processes.sum(peak_megabytes())};
   together(processes.comm(), [&] {
-    if (processes.is_lead()) print_answer(flow_json(flow, effort));
+    if (!processes.is_lead()) return;
+    print_answer(flow_json(flow, effort));
+    if (line.files.checkpoint.empty()) return;
+    std::filesystem::remove(line.files.checkpoint);
+    std::filesystem::remove(line.files.checkpoint += ".coarse");
   });
 }
 

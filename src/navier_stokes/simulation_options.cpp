@@ -42,6 +42,11 @@ void MeshOptions::validate() const {
   check_cells("cells-along", cells_along, 6);
   check_cells("cells-up", cells_up, 2);
   check_cells("cells-across", cells_across, 2);
+  constexpr const char* kSolvers[] = {"auto", "direct", "iterative"};
+  if (std::find(std::begin(kSolvers), std::end(kSolvers), solver) == std::end(kSolvers)) {
+    throw InputError("--solver", fmt::format("\"{}\" is none", solver),
+                     "Choose direct, iterative or auto");
+  }
   if (!(tolerance > 0.0 && tolerance < 1.0)) {
     throw InputError("--tolerance", fmt::format("{:g} is out of range", tolerance),
                      "Give a part of the drop between 0 and 1, e.g. 0.005");
