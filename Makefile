@@ -2,13 +2,15 @@
 # The work itself is done by CMake, CTest and the scripts of tools/.
 #
 # Variables: BUILD (build folder), JOBS (parallel jobs), BUILD_TYPE (of a new build folder),
-# DEMO (where `make demo` writes), PACKAGES=no (install nothing), CMAKE_FLAGS (more -D...).
+# DEMO (where `make demo` writes), PACKAGES=no (install nothing), SOLVER=no (without the
+# Navier-Stokes solver and deal.II, 1.7 GB), CMAKE_FLAGS (more -D...).
 
 BUILD ?= build
 JOBS ?= $(shell nproc 2>/dev/null || echo 2)
 BUILD_TYPE ?= Release
 DEMO ?= manoscope-demo
 PACKAGES ?= yes
+SOLVER ?= yes
 PRACTICE ?= ../shared/data/practice
 CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
@@ -45,7 +47,9 @@ install = $(if $(filter yes,$(PACKAGES)),tools/install_packages.sh,@: not instal
 # Node, npm and a browser may well be there from elsewhere, which Debian's would quarrel with.
 has = $(shell command -v $(1))
 install_web = $(if $(and $(call has,node),$(call has,npm),$(or $(CHROMIUM),$(call has,chromium))),:,$(install) web)
-configure = cmake -S . -B $(BUILD) --log-level=WARNING $(CMAKE_FLAGS)
+solver = $(if $(filter yes,$(SOLVER)),navier-stokes)
+configure = cmake -S . -B $(BUILD) --log-level=WARNING \
+  -DMANOSCOPE_NAVIER_STOKES=$(if $(solver),ON,OFF) $(CMAKE_FLAGS)
 # The program alone needs no test framework: a new folder starts without the tests.
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
@@ -55,16 +59,16 @@ without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
         scripts tidy tidy-changed asan asan-changed asan-all fuzz fuzz-coverage clean \
         install-packages help
 
-all: ## build the program, build/manoscope (the default)
-	@$(install) build libraries figures
+all: ## build the program, build/manoscope, and its Navier-Stokes solver (the default)
+	@$(install) build libraries figures $(solver)
 	@$(configure) $(without_tests)
-	@cmake --build $(BUILD) --target manoscope -j $(JOBS)
+	@cmake --build $(BUILD) --target programs -j $(JOBS)
 
 demo: all ## a virtual experiment with known truth: made, measured, judged
 	$(BUILD)/manoscope demo -o $(DEMO)
 
 test: ## build everything and run every test
-	@$(install) build libraries figures tests
+	@$(install) build libraries figures tests $(solver)
 	@$(configure) -DMANOSCOPE_TESTS=ON
 	@cmake --build $(BUILD) -j $(JOBS)
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
@@ -133,10 +137,7 @@ flow-models: ## errors of the flow models in S1 to S5: figure and table of docs/
 	$(BUILD)/model_errors $(BUILD)/model_errors.csv
 	/usr/bin/python3 tools/model_error_figure.py $(BUILD)/model_errors.csv docs
 
-simulation: ## the Navier-Stokes solver, build/manoscope-navier-stokes; installs deal.II, 1.7 GB
-	@$(install) build libraries navier-stokes
-	@$(configure) $(without_tests)
-	@cmake --build $(BUILD) -j $(JOBS) --target manoscope manoscope-navier-stokes
+simulation: all ## the Navier-Stokes solver, build/manoscope-navier-stokes, where it was left out
 
 simulation-check: ## its flows against independent solutions, in three dimensions on fine meshes: minutes
 	@$(install) build libraries tests navier-stokes
