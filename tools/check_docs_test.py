@@ -2,13 +2,13 @@
 """Tests of check_docs.py on small made-up projects: python3 tools/check_docs_test.py"""
 
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import check_docs
+import test_support
 
 PROGRAM = """#!/bin/sh
 if [ "$1" = twin ] && [ "$2" != --help ]; then
@@ -29,20 +29,12 @@ fi
 """
 
 
-class CheckDocs(unittest.TestCase):
+class CheckDocs(test_support.Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = Path(folder.name)
+        super().setUp()
         self.write("build/manoscope", PROGRAM).chmod(0o755)
         self.write("Makefile", "BUILD ?= build\nall: program\ndemo test: all\n")
         self.write("docs/flow.md", "# The flow\n\n## In `x` and y, at once\n")
-
-    def write(self, name, text):
-        path = self.root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-        return path
 
     def faults(self, readme):
         self.write("README.md", readme)
@@ -50,10 +42,7 @@ class CheckDocs(unittest.TestCase):
         return check_docs.check(self.root, program)
 
     def assert_one_fault(self, readme, *words):
-        faults = self.faults(readme)
-        self.assertEqual(len(faults), 1, faults)
-        for word in words:
-            self.assertIn(word, faults[0])
+        self.assert_only_fault(self.faults(readme), *words)
 
     def test_a_scenario_must_be_one_that_the_program_makes(self):
         sound = '# A\n```toml\nscenario = 1\nname = "sound"\n```\n'

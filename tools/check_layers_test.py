@@ -2,33 +2,23 @@
 """Tests of check_layers.py on small made-up trees: python3 tools/check_layers_test.py"""
 
 import sys
-import tempfile
 import unittest
 from pathlib import Path
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import check_layers
+import test_support
 
 
-class CheckLayers(unittest.TestCase):
+class CheckLayers(test_support.Folder):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = Path(folder.name)
+        super().setUp()
         self.write("layers.txt", "core\nnumerics\nio maps\npipeline\n")
         self.write("src/manoscope/core/units.hpp", "#include <cmath>\n")
 
-    def write(self, name, text):
-        path = self.root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-
     def assert_one_fault(self, *words):
-        faults = check_layers.check(self.root)
-        self.assertEqual(len(faults), 1, faults)
-        for word in words:
-            self.assertIn(word, faults[0])
+        self.assert_only_fault(check_layers.check(self.root), *words)
 
     def test_includes_that_point_down_pass(self):
         self.write("src/manoscope/maps/level.hpp", '#include "manoscope/core/units.hpp"\n')

@@ -29,12 +29,17 @@ GOALS = {"inside": (5.0, 0.0005), "inlet": (10.0, 0.002), "outlet": (10.0, 0.002
 FINE_GAUGE, FINE_GOAL = 1.0, (2.0, 0.0002)
 
 
-def read_rows(path):
+def read_runs(path):
+    """Rows of a campaign without those that mark an experiment as done."""
     with open(path, newline="") as file:
         rows = [row for row in csv.DictReader(file) if row["run"] != "done"]
     if not rows:
         sys.exit(f"{path}: holds no run: the campaign has just begun")
-    return [row for row in rows if int(row["n_answered"]) > 0]
+    return rows
+
+
+def read_rows(path):
+    return [row for row in read_runs(path) if int(row["n_answered"]) > 0]
 
 
 def goal(row):

@@ -13,12 +13,10 @@ an experiment share their errors: the figure behind a ± is the standard error o
 """
 
 import argparse
-import csv
 import json
 import math
 import pathlib
 import statistics
-import sys
 
 import coverage_table
 
@@ -45,10 +43,7 @@ def alarms(row, prefix):
 
 def read_rows(path):
     """Rows with their verdicts as 0 or 1, and their class."""
-    with open(path, newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["run"] != "done"]
-    if not rows:
-        sys.exit(f"{path}: holds no run: the campaign has just begun")
+    rows = coverage_table.read_runs(path)
     for row in rows:
         false, caught = alarms(row, ""), alarms(row, "wrong_")
         if false:
