@@ -7,53 +7,46 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <mutex>
 #include <new>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/core/suggest.hpp"
+#include "progress_bar.hpp"
+#include "text_table.hpp"
 
 namespace manoscope::cli {
 namespace {
 
 volatile std::sig_atomic_t stop_signal = 0;
 
+/// A first Ctrl-C stops the work at its next checkpoint, a second ends the program at once.
 extern "C" void on_stop(int signal) {
-  stop_signal = signal;
-  std::signal(signal, SIG_DFL);  // a second Ctrl-C ends the program at once
+  if (stop_signal == 0) {
+    stop_signal = signal;
+    return;
+  }
+  ProgressBar::clear_at_signal();
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
-/// A bar on the terminal's last line, removed when done.
-class ProgressLine {
- public:
-  void show(std::string_view stage, double fraction) {
-    constexpr int kWidth = 30;
-    const std::scoped_lock guard(mutex_);
-    const int filled = static_cast<int>(fraction * kWidth);
-    const int percent = static_cast<int>(fraction * 100.0);
-    if (percent == last_percent_ && stage == last_stage_) return;
-    last_percent_ = percent;
-    last_stage_ = stage;
-    fmt::print(stderr, "\r{:<24} [{:#<{}}{:.<{}}] {:3d} %", stage, "", filled, "", kWidth - filled,
-               percent);
-    std::fflush(stderr);
-    shown_ = true;
-  }
-  void clear() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-    shown_ = false;
-  }
+/// There is one terminal, and all that is written passes by here.
+ProgressBar& progress_bar() {
+  static ProgressBar bar;
+  return bar;
+}
 
- private:
-  std::mutex mutex_;
-  int last_percent_ = -1;
-  std::string last_stage_;
-  bool shown_ = false;
-};
+/// Lines that end with a word on a terminal; whole elsewhere, where a line is what is searched for.
+void write_remark(const std::string& text) {
+  progress_bar().clear();
+  const Screen screen = screen_of(STDERR_FILENO);
+  const std::string lines = screen.terminal ? wrapped(text, screen.columns) : text + '\n';
+  std::fputs(lines.c_str(), stderr);
+}
 
 void say(const std::string& kind, const std::string& text) {
-  fmt::print(stderr, "manoscope: {}: {}\n", kind, text);
+  write_remark(fmt::format("manoscope: {}: {}", kind, text));
 }
 
 }  // namespace
@@ -66,7 +59,6 @@ struct Command::Impl {
 struct Program::Impl {
   CLI::App app{"Pressure inside micro-channels, read off the deflection of their wall"};
   Context context;
-  ProgressLine progress;
 };
 
 Command::Command(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -168,9 +160,10 @@ int Program::run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   Impl& impl = *impl_;
   impl.context.monitor.stop_requested = [] { return stop_signal != 0; };
-  if (isatty(STDERR_FILENO) == 1) {
+  impl.context.screen = screen_of(STDOUT_FILENO);
+  if (screen_of(STDERR_FILENO).moves) {
     impl.context.monitor.progress = [&impl](std::string_view stage, double fraction) {
-      if (!impl.context.quiet) impl.progress.show(stage, fraction);
+      if (!impl.context.quiet) progress_bar().show(stage, fraction);
     };
   }
   constexpr int kOurFault = 1, kUsersFault = 2, kInterrupted = 130;
@@ -180,7 +173,7 @@ int Program::run(int argc, char** argv) {
   }
   try {
     impl.app.parse(argc, argv);
-    impl.progress.clear();
+    progress_bar().clear();
     return 0;
   } catch (const CLI::CallForHelp& request) {
     return impl.app.exit(request);
@@ -202,23 +195,18 @@ int Program::run(int argc, char** argv) {
     }
     return kUsersFault;
   } catch (const InputErrors& errors) {
-    impl.progress.clear();
     for (const InputError& fault : errors.faults()) say("error", fault.what());
     return kUsersFault;
   } catch (const InputError& error) {
-    impl.progress.clear();
     say("error", error.what());
     return kUsersFault;
   } catch (const Interrupted&) {
-    impl.progress.clear();
     say("stopped", "interrupted; nothing was half-written");
     return kInterrupted;
   } catch (const std::bad_alloc&) {
-    impl.progress.clear();
     say("error", "out of memory. Free some, or use fewer --threads.");
     return kOurFault;
   } catch (const std::exception& error) {
-    impl.progress.clear();
     say("fault of the program",
         fmt::format("{}. Please report it with the input that led here.", error.what()));
     return kOurFault;
@@ -226,6 +214,7 @@ int Program::run(int argc, char** argv) {
 }
 
 void print(const std::string& text) {
+  progress_bar().clear();
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
   if (!written || std::fflush(stdout) != 0) {
     throw InputError("standard output", "cannot be written",
@@ -234,7 +223,7 @@ void print(const std::string& text) {
 }
 
 void remark(const Context& context, const std::string& text) {
-  if (!context.quiet) fmt::print(stderr, "{}\n", text);
+  if (!context.quiet) write_remark(text);
 }
 
 }  // namespace manoscope::cli

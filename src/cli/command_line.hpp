@@ -10,6 +10,7 @@
 
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/core/options.hpp"
+#include "screen.hpp"
 
 namespace manoscope::cli {
 
@@ -20,6 +21,7 @@ struct Context {
   int threads = 0;  ///< 0 = all the machine has
   std::uint64_t seed = 1;
   Monitor monitor;  ///< progress on a terminal, Ctrl-C
+  Screen screen;    ///< of standard output
 };
 
 /// One command of the program while it is being described; keeps CLI11 in one source file.

@@ -80,9 +80,10 @@ void demo(const Context& context, const std::filesystem::path& out) {
                   "Measured against true, over each test section\n{}\n"
                   "Report: {}\n"
                   "{}",
-                  made.maps.size(), folder.string(), pressure_text(measurement),
-                  summary_text(measurement), inertia_text(measurement), split_text(verdict.split),
-                  judgement_text(verdict), (out / "report.html").string(), verdict_text(verdict)));
+                  made.maps.size(), folder.string(), details_text(measurement, context.screen),
+                  summary_text(measurement, context.screen), inertia_text(measurement),
+                  split_text(verdict.split), judgement_text(verdict),
+                  (out / "report.html").string(), verdict_text(verdict)));
 }
 
 }  // namespace

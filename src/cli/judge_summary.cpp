@@ -6,14 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "json_number.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
 namespace {
 
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 validation::PullSummary average_pulls(const Verdict& verdict) {
   std::vector<validation::Judgement> readings;
@@ -104,9 +103,7 @@ json split_json(const validation::SplitSummary& split) {
 json stations_json(const pipeline::RunStations& stations) {
   json columns = json::object();
   for (const pipeline::StationColumn& column : stations.columns) {
-    json values = json::array();
-    for (const double value : column.values) values.push_back(number(value));
-    columns[column.name] = std::move(values);
+    columns[column.name] = numbers(column.values);
   }
   return columns;
 }

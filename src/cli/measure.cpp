@@ -13,7 +13,7 @@ namespace manoscope::cli {
 void add_measure(Program& program) {
   struct Args {
     std::filesystem::path experiment, out;
-    bool overwrite = false;
+    bool overwrite = false, details = false;
     pipeline::MeasureOptions options;
     report::ReportOptions report;
   };
@@ -24,6 +24,8 @@ void add_measure(Program& program) {
   command.option("-o,--output", args->out,
                  "folder for the result; an earlier one of the same experiment is replaced", true);
   command.flag("--overwrite", args->overwrite, "replace a result of another experiment, too");
+  command.flag("--details", args->details,
+               "print p(x) at some stations and what the flow models find, too");
   command.options(args->options, "Measurement");
   command.options(args->report, "Report");
   command.action([args](const Context& context) {
@@ -33,13 +35,15 @@ void add_measure(Program& program) {
     const auto measurement =
         pipeline::measure(experiment, args->options, context.threads, context.monitor);
     context.monitor.checkpoint();
+    context.monitor.report("drawing the report", 0.0);
     results::write_result(args->out, measurement, report::make_report(measurement, args->report));
     if (context.json) {
       print(summary_json(measurement, args->out));
     } else {
-      const bool table = !context.quiet && measurement.flow_rate.size() > 0;
-      print((table ? pressure_text(measurement) + "\n" : "") + summary_text(measurement) +
-            (context.quiet ? "" : checks_text(measurement)));
+      const std::string details =
+          args->details ? details_text(measurement, context.screen) : std::string();
+      print(details + (details.empty() ? "" : "\n") + summary_text(measurement, context.screen) +
+            (context.quiet ? "" : checks_text(measurement, context.screen)));
     }
     for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
     if (!context.json) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "json_number.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/uncertainty.hpp"
 #include "manoscope/report/flow_verdict.hpp"
@@ -17,25 +18,11 @@ namespace {
 using nlohmann::json;
 using results::Simulation;
 
-constexpr double kMlPerMin = 60e6;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-json list(const Array1& values) {
-  json all = json::array();
-  for (const double value : values) all.push_back(number(value));
-  return all;
-}
-
 Array1 row(const Array2& values, Index v) { return values.row(v).transpose(); }
 
 std::string percent(double part, double whole) {
   return std::isfinite(part / whole) ? fmt::format("{:+.1f} %", 100.0 * part / whole)
                                      : std::string("-");
-}
-
-std::string fixed(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : std::string("-");
 }
 
 /// The words of a solution and of what is added to it.
@@ -48,7 +35,7 @@ std::string drops_text(const std::vector<Simulation>& simulations) {
   std::vector<std::vector<std::string>> rows{
       {"run", "Q [mL/min]", "", "dp ± U [Pa]", "less the reading", "E_n", "verdict"}};
   for (const Simulation& s : simulations) {
-    const std::string flow = fmt::format("{:.4g}", s.flow_rate * kMlPerMin);
+    const std::string flow = flow_rate_text(FlowRate::from_si(s.flow_rate));
     rows.push_back({s.run, flow, "read off the wall",
                     value_text(s.extracted_drop, s.extracted_drop_uncertainty), "", "", ""});
     for (Index v = 0; v < s.drop.size(); ++v) {
@@ -133,8 +120,8 @@ json variant_json(const Simulation& s, Index v) {
           {"dof", number(s.dof[v])},
           {"p_value", number(s.p_value[v])},
           {"verdict", s.verdict[at]},
-          {"mean_pressure_Pa", list(row(s.pressure, v))},
-          {"mean_pressure_uncertainty_Pa", list(row(s.pressure_uncertainty, v))}};
+          {"mean_pressure_Pa", numbers(row(s.pressure, v))},
+          {"mean_pressure_uncertainty_Pa", numbers(row(s.pressure_uncertainty, v))}};
 }
 
 json run_json(const Simulation& s) {
@@ -147,20 +134,20 @@ json run_json(const Simulation& s) {
           {"drop_numerical_uncertainty_Pa", s.channel_drop_numerical_uncertainty},
           {"coarse_drop_Pa", s.coarse_channel_drop},
           {"converged", s.converged != 0.0},
-          {"x_m", list(s.x)},
-          {"gap_m", list(s.gap)},
-          {"deflection_m", list(s.zeta)},
-          {"deflection_uncertainty_m", list(s.zeta_uncertainty)},
-          {"mean_pressure_Pa", list(row(s.pressure, 0))},
-          {"mean_pressure_uncertainty_Pa", list(row(s.pressure_uncertainty, 0))},
-          {"wall_pressure_Pa", list(s.wall_pressure)},
-          {"floor_pressure_Pa", list(s.floor_pressure)},
-          {"wall_shear_Pa", list(s.wall_shear)},
-          {"floor_shear_Pa", list(s.floor_shear)},
-          {"read_pressure_Pa", list(s.read_pressure)},
-          {"read_pressure_uncertainty_Pa", list(s.read_uncertainty)},
+          {"x_m", numbers(s.x)},
+          {"gap_m", numbers(s.gap)},
+          {"deflection_m", numbers(s.zeta)},
+          {"deflection_uncertainty_m", numbers(s.zeta_uncertainty)},
+          {"mean_pressure_Pa", numbers(row(s.pressure, 0))},
+          {"mean_pressure_uncertainty_Pa", numbers(row(s.pressure_uncertainty, 0))},
+          {"wall_pressure_Pa", numbers(s.wall_pressure)},
+          {"floor_pressure_Pa", numbers(s.floor_pressure)},
+          {"wall_shear_Pa", numbers(s.wall_shear)},
+          {"floor_shear_Pa", numbers(s.floor_shear)},
+          {"read_pressure_Pa", numbers(s.read_pressure)},
+          {"read_pressure_uncertainty_Pa", numbers(s.read_uncertainty)},
           {"inlet", s.inlet},
-          {"inlet_effect_Pa", list(s.inlet_effect)},
+          {"inlet_effect_Pa", numbers(s.inlet_effect)},
           {"outlet_pressure_Pa", number(s.outlet_pressure)},
           {"outlet_pressure_uncertainty_Pa", number(s.outlet_uncertainty)},
           {"shape", s.roof},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "json_number.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -12,8 +13,6 @@ namespace {
 
 using design::Plan;
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 /// Two to three digits, or a dash.
 std::string short_number(double value) {

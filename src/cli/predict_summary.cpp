@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "json_number.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -41,11 +42,7 @@ unsigned int any_flags(const FlowPrediction& flow) {
 }
 
 std::string flow_text(const FlowPrediction& flow) {
-  return fmt::format("{:.4g} mL/min", flow.flow_rate.in(mL_per_min));
-}
-
-json list(const Array1& values) {
-  return std::vector<double>(values.data(), values.data() + values.size());
+  return flow_rate_text(flow.flow_rate) + " mL/min";
 }
 
 /// The value furthest from 0, with its sign.
@@ -61,7 +58,7 @@ std::string drops_text(const pipeline::Predictions& predictions) {
                                               "flags"}};
   for (const FlowPrediction& flow : predictions.flows) {
     const Index last = flow.pressure.size() - 1;
-    rows.push_back({fmt::format("{:.4g}", flow.flow_rate.in(mL_per_min)),
+    rows.push_back({flow_rate_text(flow.flow_rate),
                     value_text(flow.drop.value, flow.drop.standard_uncertainty()),
                     fmt::format("{:.0f}", flow.pressure[0]),
                     fmt::format("{:.0f}", flow.pressure[last]),
@@ -122,11 +119,11 @@ std::string predictions_json(const pipeline::Predictions& predictions) {
                      {"drop_uncertainty_Pa", flow.drop.standard_uncertainty()},
                      {"outlet_pressure_Pa", flow.pressure[flow.pressure.size() - 1]},
                      {"reduced_reynolds", flow.error.reduced_reynolds},
-                     {"x_m", list(flow.x)},
-                     {"pressure_Pa", list(flow.pressure)},
-                     {"pressure_uncertainty_Pa", list(flow.uncertainty.standard())},
-                     {"deflection_m", list(flow.zeta)},
-                     {"deflection_uncertainty_m", list(flow.zeta_uncertainty.standard())},
+                     {"x_m", numbers(flow.x)},
+                     {"pressure_Pa", numbers(flow.pressure)},
+                     {"pressure_uncertainty_Pa", numbers(flow.uncertainty.standard())},
+                     {"deflection_m", numbers(flow.zeta)},
+                     {"deflection_uncertainty_m", numbers(flow.zeta_uncertainty.standard())},
                      {"flags", flags},
                      {"doubt", doubt.empty() ? json(nullptr) : json(doubt)}});
   }

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "json_number.hpp"
 #include "manoscope/core/uncertainty.hpp"
 #include "manoscope/report/flow_verdict.hpp"
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
+#include "run_table.hpp"
 #include "summary_checks.hpp"
 #include "summary_flow.hpp"
 #include "text_table.hpp"
@@ -17,8 +20,6 @@ namespace manoscope::cli {
 namespace {
 
 using nlohmann::json;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 /// p(x) of the runs [first, last) at stations spread evenly over the channel.
 std::string pressure_table(const results::Measurement& m, Index first, Index last) {
@@ -31,45 +32,65 @@ std::string pressure_table(const results::Measurement& m, Index first, Index las
     const double x = m.channel_length * (i + 0.5) / kRows;
     Index nearest = 0;
     (m.x - x).abs().minCoeff(&nearest);
-    std::vector<std::string> row{fmt::format("{:.2f}", m.x[nearest] * 1e3)};
+    std::vector<std::string> row{fixed(m.x[nearest] * 1e3, 2)};
     for (Index r = first; r < last; ++r) {
       row.push_back(value_text(m.pressure(r, nearest), m.pressure_uncertainty(r, nearest)));
     }
     rows.push_back(std::move(row));
   }
-  return text_table(rows);
+  return text_table(rows, std::vector<Align>(rows.front().size(), Align::point));
 }
 
-/// dp_e and QR of every run: what their bars alone say, and what they say with the stated error of
-/// eq. (4).
-std::string drops_text(const results::Measurement& m) {
-  constexpr double kMlPerMin = 60e6;
+/// Of every run, as many beside each other as there is room for.
+std::string pressure_tables(const results::Measurement& m, const Screen& screen) {
+  constexpr Index kMostAcross = 6;
+  std::string text;
+  for (Index across = kMostAcross; across > 0; --across) {
+    text.clear();
+    for (Index first = 0; first < m.flow_rate.size(); first += across) {
+      if (first > 0) text += '\n';
+      text += pressure_table(m, first, std::min(first + across, m.flow_rate.size()));
+    }
+    if (fits(text, screen.columns)) break;
+  }
+  return text;
+}
+
+std::string pressure_text(const results::Measurement& m, const Screen& screen) {
+  std::string text = "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)\n";
+  if (!m.reading.empty()) {
+    text += wrapped("read " + m.reading.substr(0, m.reading.find(": E = ")), screen.columns);
+  }
+  return text + pressure_tables(m, screen);
+}
+
+/// QR of every run: what its bars alone say, and what they say with the stated error of eq. (4).
+std::string resistance_text(const results::Measurement& m, const Screen& screen) {
   const Index paper = report::flow_model_row(m, "paper");
-  std::vector<std::vector<std::string>> rows{{"run", "Q [mL/min]", "Re", "section [mm]",
-                                              "dp_e ± U [Pa]", "QR ± U [Pa]", "E_n",
-                                              "eq. (4) as exact"}};
+  std::vector<std::vector<std::string>> rows{
+      {"run", "Re", "section [mm]", "QR ± U [Pa]", "E_n", "eq. (4) as exact"}};
   if (paper >= 0) rows.front().push_back("with its error");
   for (Index r = 0; r < m.flow_rate.size(); ++r) {
     const double start = m.test_section(r, 0), end = m.test_section(r, 1);
-    rows.push_back(
-        {m.run[static_cast<std::size_t>(r)], fmt::format("{:.4g}", m.flow_rate[r] * kMlPerMin),
-         fmt::format("{:.0f}", m.reynolds[r]),
-         std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
-                              : std::string("none"),
-         value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
-         value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
-         std::isfinite(m.en_number[r]) ? fmt::format("{:.2f}", m.en_number[r]) : std::string("-"),
-         report::resistance_word(m.en_number[r])});
+    rows.push_back({m.run[static_cast<std::size_t>(r)], fixed(m.reynolds[r], 0),
+                    std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
+                                         : std::string("none"),
+                    value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
+                    fixed(m.en_number[r], 2), report::resistance_word(m.en_number[r])});
     if (paper >= 0) rows.back().push_back(report::verdict_word(report::flow_verdict(m, paper, r)));
   }
-  return fmt::format(
-      "Does the flow agree?\n{}U: expanded uncertainty, k = 2. dp_e: drop read off the wall over "
-      "the section. QR: the paper's eq. (4),\nno inertia or entry flow. {}\nE_n and what follows "
-      "it take eq. (4) as exact and its inlet as known: beyond U may be the formula's.{}\n",
-      text_table(rows), report::resistance_uncertainty_text(m),
-      paper >= 0 ? "\nWith its error: the verdict, by the stated error of eq. (4), the inlet's and "
-                   "p(x) along x."
-                 : "");
+  std::vector<Align> aligns{Align::left,  Align::right, Align::right, Align::point,
+                            Align::point, Align::left,  Align::left};
+  aligns.resize(rows.front().size());
+  return "By the paper's eq. (4)\n" + text_table(rows, aligns) +
+         wrapped(fmt::format("QR: no inertia or entry flow. {}\nE_n and what follows it take eq. "
+                             "(4) as exact and its inlet as known: beyond U may be the formula's.",
+                             report::resistance_uncertainty_text(m)),
+                 screen.columns) +
+         (paper >= 0 ? wrapped("With its error: the verdict, by the stated error of eq. (4), the "
+                               "inlet's and p(x) along x.",
+                               screen.columns)
+                     : std::string());
 }
 
 /// What a user should know of a wall that left its branch; nothing of one that did not.
@@ -94,27 +115,20 @@ json snaps_json(const twin::SnapTruth& snaps) {
 
 }  // namespace
 
-std::string summary_text(const results::Measurement& m) {
-  std::string text;
-  if (m.flow_rate.size() > 0) {
-    text += drops_text(m) + flow_checks_text(m);
-  } else {
-    text +=
-        fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
-  }
-  if (!m.tube_law.empty()) text += "tube law: " + m.tube_law + '\n';
+std::string summary_text(const results::Measurement& m, const Screen& screen) {
+  std::string text = m.flow_rate.size() > 0
+                         ? run_table(m, screen)
+                         : fmt::format("calibration only: {} levels, no map under flow\n",
+                                       m.level_pressure.size());
+  if (!m.tube_law.empty()) text += wrapped("tube law: " + m.tube_law, screen.columns);
   return text;
 }
 
-std::string pressure_text(const results::Measurement& m) {
-  constexpr Index kRunsAcross = 4;  // 80 columns of a terminal
-  std::string text = "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)\n";
-  if (!m.reading.empty()) text += "read " + m.reading.substr(0, m.reading.find(": E = ")) + '\n';
-  for (Index first = 0; first < m.flow_rate.size(); first += kRunsAcross) {
-    if (first > 0) text += '\n';
-    text += pressure_table(m, first, std::min(first + kRunsAcross, m.flow_rate.size()));
-  }
-  return text;
+std::string details_text(const results::Measurement& m, const Screen& screen) {
+  if (m.flow_rate.size() == 0) return {};
+  const std::string found = flow_findings_text(m, screen);
+  return pressure_text(m, screen) + '\n' + resistance_text(m, screen) +
+         (found.empty() ? "" : '\n' + found);
 }
 
 std::string summary_json(const results::Measurement& m, const std::filesystem::path& folder) {

@@ -6,14 +6,16 @@
 
 #include "manoscope/results/measurement.hpp"
 #include "manoscope/twin/virtual_experiment.hpp"
+#include "screen.hpp"
 
 namespace manoscope::cli {
 
-/// The runs of a measurement as an aligned table, drops with expanded uncertainty (k = 2).
-std::string summary_text(const results::Measurement& measurement);
-/// p(x) of every run at a few stations, as an aligned table.
-std::string pressure_text(const results::Measurement& measurement);
-/// The same as JSON, SI units: what drops.csv holds, checks, and what to improve first.
+/// The runs of a measurement as one table, and the tube law.
+std::string summary_text(const results::Measurement& measurement, const Screen& screen);
+/// What stands behind it, as aligned tables with expanded uncertainty (k = 2): p(x) of every run at
+/// a few stations, its drop by eq. (4), what its flow model finds. "" without a map under flow.
+std::string details_text(const results::Measurement& measurement, const Screen& screen);
+/// The runs as JSON, SI units: what drops.csv holds, checks, and what to improve first.
 std::string summary_json(const results::Measurement& measurement,
                          const std::filesystem::path& folder);
 

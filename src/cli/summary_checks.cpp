@@ -1,35 +1,17 @@
 #include "summary_checks.hpp"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "json_number.hpp"
 #include "manoscope/report/advice.hpp"
 #include "manoscope/report/check_summary.hpp"
+#include "text_table.hpp"
 
 namespace manoscope::cli {
 namespace {
 
 using nlohmann::json;
 using results::Measurement;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-/// Broken at blanks to lines of at most 100 characters, those after the first indented.
-std::string wrapped(const std::string& text) {
-  constexpr std::size_t kWidth = 100;
-  std::istringstream words(text);
-  std::string lines, line;
-  for (std::string word; words >> word;) {
-    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
-      lines += line + '\n';
-      line = "  " + word;
-    } else {
-      line += (line.empty() ? "" : " ") + word;
-    }
-  }
-  return lines + line + '\n';
-}
 
 json shape_json(const Measurement& m, Index map) {
   const auto i = static_cast<std::size_t>(map);
@@ -54,11 +36,10 @@ json one_advice(const std::optional<report::Advice>& advice) {
 
 }  // namespace
 
-std::string checks_text(const Measurement& m) {
+std::string checks_text(const Measurement& m, const Screen& screen) {
   std::string text;
-  for (const std::string& line : report::check_lines(m)) text += wrapped(line);
-  std::istringstream advice(report::advice_text(m));
-  for (std::string line; std::getline(advice, line);) text += wrapped(line);
+  for (const std::string& line : report::check_lines(m)) text += line + '\n';
+  text = wrapped(text + report::advice_text(m), screen.columns);
   return text.empty() ? text : "\nChecks without truth\n" + text;
 }
 

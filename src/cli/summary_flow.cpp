@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "manoscope/report/flow_verdict.hpp"
+#include "json_number.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -14,28 +14,6 @@ namespace {
 
 using nlohmann::json;
 using results::Measurement;
-
-constexpr double kMlPerMin = 60e6;
-
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
-bool beyond_validity(const Measurement& m, Index model, Index run) {
-  return model >= 0 && std::isgreater(m.model_stated_error(model, run), report::kMostStatedError);
-}
-
-std::vector<std::string> run_row(const Measurement& m, Index model, Index r) {
-  const bool known = model >= 0;
-  const double en = known ? m.model_en_number(model, r) : std::nan("");
-  const std::string word = report::verdict_word(report::flow_verdict(m, model, r));
-  return {m.run[static_cast<std::size_t>(r)],
-          known ? value_text(m.model_drop(model, r), m.model_drop_uncertainty(model, r))
-                : std::string("-"),
-          std::isfinite(en) ? fmt::format("{:.2f}", en) : std::string("-"),
-          word + (beyond_validity(m, model, r) ? "*" : ""),
-          value_text(m.inferred_flow_rate[r] * kMlPerMin,
-                     m.inferred_flow_rate_uncertainty[r] * kMlPerMin),
-          value_text(m.predicted_drop[r], m.predicted_drop_uncertainty[r])};
-}
 
 json models_json(const Measurement& m, Index r) {
   json models = json::array();
@@ -64,27 +42,23 @@ json corrections_json(const Measurement& m, Index r) {
 
 }  // namespace
 
-std::string flow_checks_text(const Measurement& m) {
-  const Index model = report::flow_model_row(m, m.verdict_model);
-  const bool compared = model >= 0 && m.model_drop.row(model).isFinite().any();
-  if (!compared && !m.inferred_flow_rate.isFinite().any() && !m.predicted_drop.isFinite().any()) {
-    return {};
-  }
-  std::vector<std::vector<std::string>> rows{{"run", "dp model ± U [Pa]", "E_n", "verdict",
-                                              "Q off the wall [mL/min]", "dp predicted [Pa]"}};
-  bool doubtful = false;
+std::string flow_findings_text(const Measurement& m, const Screen& screen) {
+  if (!m.inferred_flow_rate.isFinite().any() && !m.predicted_drop.isFinite().any()) return {};
+  std::vector<std::vector<std::string>> rows{
+      {"run", "Q off the wall ± U [mL/min]", "dp end to end ± U [Pa]"}};
   for (Index r = 0; r < m.flow_rate.size(); ++r) {
-    rows.push_back(run_row(m, model, r));
-    doubtful = doubtful || beyond_validity(m, model, r);
+    const auto mL = [](double si) { return FlowRate::from_si(si).in(mL_per_min); };
+    rows.push_back(
+        {m.run[static_cast<std::size_t>(r)],
+         value_text(mL(m.inferred_flow_rate[r]), mL(m.inferred_flow_rate_uncertainty[r])),
+         value_text(m.predicted_drop[r], m.predicted_drop_uncertainty[r])});
   }
-  std::string text = fmt::format(
-      "\nBy the flow model {}\n{}dp model: over the section, against dp_e above; agrees: E_n <= 1 "
-      "and the pressure along x fits, too.\nQ off the wall: from the deflection alone. dp "
-      "predicted: "
-      "between the ends of the channel, from the\ncalibration and the set Q.\n",
-      m.verdict_model, text_table(rows));
-  if (doubtful) text += "*: the model itself may be more than 2 % off at this flow.\n";
-  return text;
+  return fmt::format("By the flow model {}\n{}", m.verdict_model,
+                     text_table(rows, {Align::left, Align::point, Align::point})) +
+         wrapped(
+             "Q off the wall: from the deflection alone. dp end to end: between the ends of the "
+             "channel, predicted from the calibration and the set Q.",
+             screen.columns);
 }
 
 json flow_checks_json(const Measurement& m, Index r) {
