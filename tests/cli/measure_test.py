@@ -5,6 +5,7 @@ Usage: measure_test.py PROGRAM [unittest arguments]
 
 import csv
 import json
+import math
 import re
 import shutil
 import signal
@@ -17,6 +18,11 @@ from support import DemoFolder, PROGRAM, hashes, run, main
 def measure(*words, **expected):
     """Reads each station on its own, in a third of the time: for what does not turn on the reading."""
     return run("measure", "--nonlocal", "false", *words, **expected)
+
+
+def one_line(text):
+    """Whatever lines it was broken to."""
+    return " ".join(text.split())
 
 
 class Measure(DemoFolder):
@@ -39,31 +45,39 @@ class Measure(DemoFolder):
             value = printed[row["run"]]["extracted_drop_Pa"]
             self.assertAlmostEqual(float(row["extracted_drop_Pa"]), value, delta=1e-6 * abs(value))
 
-    def test_measure_prints_p_of_x_and_the_verdict_of_every_run(self):
+    def test_details_are_p_of_x_and_the_flow_of_every_run(self):
         out = self.folder / "printed"
-        done = run("measure", self.out / "experiment", "-o", out, check_code=0)
+        done = run("measure", self.out / "experiment", "-o", out, "--details", check_code=0)
         self.assertIn("± U, k = 2", done.stdout)
-        with open(out / "drops.csv", newline="") as table:
-            drops = list(csv.DictReader(table))
-        for row in drops:
+        by_model = done.stdout.split("By the flow model section-march\n")[1].split("\n\n")[0]
+        for row in self.drops(out):
             self.assertIn(f"p(x) {row['run']} [Pa]", done.stdout)
             within = "within U" if float(row["en_number"]) <= 1.0 else "beyond U"
             # Beside it the verdict on eq. (4), its stated error in the bar.
             differs = float(row["paper_model_en_number"]) > 1.0
             verdict = "differs" if differs else "(agrees|only the drop)"
-            self.assertRegex(done.stdout, rf"(?m)^ *{row['run']} .* {within} +{verdict}$")
+            self.assertRegex(done.stdout, rf"(?m)^{row['run']} .* {within} +{verdict}$")
+            rate = float(row["inferred_flow_rate_m3_s"]) * 60e6
+            [line] = [line for line in by_model.splitlines() if line.startswith(row["run"] + " ")]
+            self.assertAlmostEqual(float(line.split()[1]), rate, delta=0.01 * rate)
         # The same numbers as the demo printed for the same maps.
         [line] = [line for line in self.done.stdout.splitlines() if re.match(r" *7\.7\d ", line)]
         self.assertIn(line, done.stdout)
-        # Results on standard output, what is said about them on standard error.
+        # The table of runs comes last of them: it stands next to where one types.
+        self.assertGreater(done.stdout.index("dp_e ± U"), done.stdout.index("By the flow model"))
+
+    def test_what_is_said_of_a_result_goes_to_standard_error(self):
+        out = self.folder / "said"
+        done = measure(self.out / "experiment", "-o", out, check_code=0)
         self.assertIn("result in", done.stderr)
         self.assertNotIn("result in", done.stdout)
+        self.assertNotRegex(done.stdout, r"p\(x\) \S+ \[Pa\]")
         quiet = measure(self.out / "experiment", "-o", out, "--quiet", check_code=0)
         self.assertEqual(quiet.stderr, "")
-        self.assertNotRegex(quiet.stdout, r"p\(x\) \S+ \[Pa\]")
+        self.assertTrue(done.stdout.startswith(quiet.stdout))
         self.assertIn("agrees", quiet.stdout)
         self.assertNotIn("Checks", quiet.stdout)
-        self.assertNotIn("Pressure along the channel",
+        self.assertNotIn("dp_e ±",
                          measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
 
     def test_measure_tells_what_the_flow_models_say(self):
@@ -110,17 +124,22 @@ class Measure(DemoFolder):
                 self.assertIsNone(run_[key])
             self.assertIsNone(run_["transducer_drop_uncertainty_Pa"])
 
-    def test_the_table_of_the_flow_model_has_the_verdict_of_every_run(self):
+    def test_one_table_has_drops_and_verdict_of_every_run(self):
         # The demo prints the same table of its own measurement.
-        table = self.done.stdout.split("By the flow model section-march\n")[1].split("tube law")[0]
-        self.assertTrue(all(len(line) <= 100 for line in table.splitlines()), table)
+        table = "dp_e ± U" + self.done.stdout.split("dp_e ± U")[1].split("tube law")[0]
+        self.assertTrue(all(len(line) <= 80 for line in table.splitlines()), table)
         for row in self.drops(self.out):
-            [line] = [line for line in table.splitlines() if re.match(rf" *{row['run']} ", line)]
+            [line] = [line for line in table.splitlines() if line.startswith(row["run"] + " ")]
             en, p = row["section_march_model_en_number"], row["section_march_model_p_value"]
             word = ("no verdict" if en == "" else "differs" if float(en) > 1.0 else
                     "agrees" if float(p) >= 0.01 else "only the drop")
-            self.assertIn(f"  {word}", line)
-            self.assertIn(f" {float(en):.2f} " if en else " - ", line)
+            self.assertRegex(line, rf"  {word}\*?$")
+            self.assertIn(f"  {float(en):.2f}  " if en else " - ", line)
+            for drop in ("extracted_drop", "section_march_model_drop"):
+                bar = 2.0 * float(row[f"{drop}_uncertainty_Pa"])
+                digits = max(0, 1 - math.floor(math.log10(bar)))
+                self.assertRegex(re.sub(" +", " ", line),
+                                 rf" {float(row[f'{drop}_Pa']):.{digits}f} ± {bar:.{digits}f} ")
 
     @staticmethod
     def drops(folder):
@@ -133,7 +152,7 @@ class Measure(DemoFolder):
         for line in ("Checks without truth", "Leaving one level out: rms ", "Cross-sections of the",
                      "Improve first: "):
             self.assertIn(line, done.stdout)
-        self.assertTrue(all(len(line) <= 100 for line in done.stdout.split("Checks")[1].splitlines()))
+        self.assertTrue(all(len(line) <= 80 for line in done.stdout.splitlines()), done.stdout)
         told = json.loads(measure(self.out / "experiment", "-o", out, "--json", check_code=0).stdout)
         self.assertEqual({"left_out", "shapes", "repeats", "sweeps"}, set(told["checks"]))
         self.assertGreater(told["checks"]["left_out"]["rms_Pa"], 0.0)
@@ -141,7 +160,7 @@ class Measure(DemoFolder):
         self.assertEqual(len(maps), len(set(maps)))
         self.assertEqual({"pressure", "extracted_drop"}, set(told["improve_first"]))
         advice = told["improve_first"]["pressure"]
-        self.assertIn(advice["source"], done.stdout)
+        self.assertIn(advice["source"], one_line(done.stdout))
         # Half of a source leaves a quarter of its variance.
         self.assertAlmostEqual(advice["bars_shrink_if_halved"],
                                1.0 - (1.0 - 0.75 * advice["share_of_variance"]) ** 0.5, delta=1e-12)
@@ -181,9 +200,9 @@ class Measure(DemoFolder):
             self.assertAlmostEqual(new["resistance_drop_uncertainty_Pa"],
                                    (u * u + (0.05 * qr) ** 2) ** 0.5, delta=1e-8 * qr)
             self.assertLess(new["en_number"], old["en_number"])
-        told = measure(wide, "-o", out, check_code=0).stdout
-        self.assertIn("U(QR) holds gap, deflection, flow rate and viscosity.", told)
-        self.assertIn("flow rate and viscosity count as exact", self.done.stdout)
+        told = measure(wide, "-o", out, "--details", check_code=0).stdout
+        self.assertIn("U(QR) holds gap, deflection, flow rate and viscosity.", one_line(told))
+        self.assertIn("flow rate and viscosity count as exact", one_line(self.done.stdout))
 
     def test_a_place_left_out_of_the_file_is_found_from_the_maps(self):
         found = self.folder / "found"

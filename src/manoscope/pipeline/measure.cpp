@@ -120,6 +120,7 @@ results::Measurement measure(const Experiment& experiment, const MeasureOptions&
                   found.reading, found.section, options.flow, found.flow);
     });
   }
+  monitor.report("checking without truth", 0.0);
   results::Measurement measurement;
   store_provenance(experiment, reduced, options, measurement);
   measurement.reading = reading_text(wall, no_wall);
