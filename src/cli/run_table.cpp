@@ -66,46 +66,21 @@ std::vector<ByFlow> by_flow(const Measurement& m) {
   return all;
 }
 
-/// A column under two heads: what it is, and its unit.
-struct Column {
-  std::vector<std::string> cells;
-  Align align = Align::right;
-};
-
-std::string laid_out(const std::vector<Column>& columns) {
-  constexpr std::size_t kHeads = 2;
-  std::vector<std::vector<std::string>> rows(columns.front().cells.size());
-  std::vector<Align> aligns;
-  for (const Column& column : columns) {
-    aligns.push_back(column.align);
-    for (std::size_t r = 0; r < rows.size(); ++r) rows[r].push_back(column.cells[r]);
-  }
-  return text_table(rows, aligns, kHeads);
-}
-
 std::string table(const Measurement& m, const std::vector<ByFlow>& flow, const Screen& screen) {
-  Column run{{"run", ""}, Align::left}, rate{{"Q", "[mL/min]"}, Align::point},
-      wall{{"dp_e ± U", "[Pa]"}, Align::point}, model{{"dp by the flow ± U", "[Pa]"}, Align::point},
-      en{{"E_n", ""}, Align::point}, verdict{{"verdict", ""}, Align::left};
+  constexpr std::size_t kHeads = 2;  // what it is, and its unit
+  std::vector<Column> columns{
+      {{"run", ""}, Align::left},           {{"Q", "[mL/min]"}, Align::point, 2},
+      {{"dp_e ± U", "[Pa]"}, Align::point}, {{"dp by the flow ± U", "[Pa]"}, Align::point, 1},
+      {{"E_n", ""}, Align::point, 3},       {{"verdict", ""}, Align::left}};
   for (Index r = 0; r < m.flow_rate.size(); ++r) {
     const auto at = static_cast<std::size_t>(r);
     const ByFlow& says = flow[at];
-    run.cells.push_back(m.run[at]);
-    rate.cells.push_back(flow_rate_text(FlowRate::from_si(m.flow_rate[r])));
-    wall.cells.push_back(value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]));
-    model.cells.push_back(value_text(says.drop, says.uncertainty));
-    en.cells.push_back(fixed(says.en_number, 2));
-    verdict.cells.push_back(coloured(says.word, says.colour, screen) + (says.doubtful ? "*" : ""));
+    add_row(columns, {m.run[at], flow_rate_text(FlowRate::from_si(m.flow_rate[r])),
+                      value_text(m.extracted_drop[r], m.extracted_drop_uncertainty[r]),
+                      value_text(says.drop, says.uncertainty), fixed(says.en_number, 2),
+                      coloured(says.word, says.colour, screen) + (says.doubtful ? "*" : "")});
   }
-  std::string text = laid_out({run, rate, wall, model, en, verdict});
-  if (!screen.terminal || fits(text, screen.columns)) return text;
-  for (const auto& fewer :
-       {std::vector<Column>{run, rate, wall, model, verdict},
-        std::vector<Column>{run, wall, model, verdict}, std::vector<Column>{run, wall, verdict}}) {
-    text = laid_out(fewer);
-    if (fits(text, screen.columns)) break;
-  }
-  return text;
+  return text_table(std::move(columns), screen, kHeads);
 }
 
 /// What every verdict in the table means.

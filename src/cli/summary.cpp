@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "json_number.hpp"
-#include "manoscope/core/uncertainty.hpp"
 #include "manoscope/report/flow_verdict.hpp"
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
@@ -67,22 +67,23 @@ std::string pressure_text(const results::Measurement& m, const Screen& screen) {
 /// QR of every run: what its bars alone say, and what they say with the stated error of eq. (4).
 std::string resistance_text(const results::Measurement& m, const Screen& screen) {
   const Index paper = report::flow_model_row(m, "paper");
-  std::vector<std::vector<std::string>> rows{
-      {"run", "Re", "section [mm]", "QR ± U [Pa]", "E_n", "eq. (4) as exact"}};
-  if (paper >= 0) rows.front().push_back("with its error");
+  std::vector<Column> columns{{{"run"}, Align::left},
+                              {{"Re"}, Align::right, 3},
+                              {{"section [mm]"}, Align::right, 2},
+                              {{"QR ± U [Pa]"}, Align::point},
+                              {{"E_n"}, Align::point, 4},
+                              {{"eq. (4) as exact"}, Align::left}};
+  if (paper >= 0) columns.push_back({{"with its error"}, Align::left, 1});
   for (Index r = 0; r < m.flow_rate.size(); ++r) {
     const double start = m.test_section(r, 0), end = m.test_section(r, 1);
-    rows.push_back({m.run[static_cast<std::size_t>(r)], fixed(m.reynolds[r], 0),
-                    std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
-                                         : std::string("none"),
-                    value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
-                    fixed(m.en_number[r], 2), report::resistance_word(m.en_number[r])});
-    if (paper >= 0) rows.back().push_back(report::verdict_word(report::flow_verdict(m, paper, r)));
+    add_row(columns, {m.run[static_cast<std::size_t>(r)], fixed(m.reynolds[r], 0),
+                      std::isfinite(start) ? fmt::format("{:.2f}-{:.2f}", start * 1e3, end * 1e3)
+                                           : std::string("none"),
+                      value_text(m.resistance_drop[r], m.resistance_drop_uncertainty[r]),
+                      fixed(m.en_number[r], 2), report::resistance_word(m.en_number[r]),
+                      report::verdict_word(report::flow_verdict(m, paper, r))});
   }
-  std::vector<Align> aligns{Align::left,  Align::right, Align::right, Align::point,
-                            Align::point, Align::left,  Align::left};
-  aligns.resize(rows.front().size());
-  return "By the paper's eq. (4)\n" + text_table(rows, aligns) +
+  return "By the paper's eq. (4)\n" + text_table(std::move(columns), screen) +
          wrapped(fmt::format("QR: no inertia or entry flow. {}\nE_n and what follows it take eq. "
                              "(4) as exact and its inlet as known: beyond U may be the formula's.",
                              report::resistance_uncertainty_text(m)),

@@ -107,6 +107,28 @@ std::string text_table(const Rows& rows, const std::vector<Align>& columns, std:
   return text;
 }
 
+void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells) {
+  for (std::size_t c = 0; c < columns.size(); ++c) columns[c].cells.push_back(cells[c]);
+}
+
+std::string text_table(std::vector<Column> columns, const Screen& screen, std::size_t n_head) {
+  for (;;) {
+    Rows rows(columns.front().cells.size());
+    std::vector<Align> aligns;
+    for (const Column& column : columns) {
+      aligns.push_back(column.align);
+      for (std::size_t r = 0; r < rows.size(); ++r) rows[r].push_back(column.cells[r]);
+    }
+    const std::string text = text_table(rows, aligns, n_head);
+    if (!screen.terminal || fits(text, screen.columns)) return text;
+    const auto least =
+        std::max_element(columns.begin(), columns.end(),
+                         [](const Column& a, const Column& b) { return a.rank < b.rank; });
+    if (least->rank == 0) return text;
+    columns.erase(least);
+  }
+}
+
 bool fits(const std::string& text, int width) {
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {

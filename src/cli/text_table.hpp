@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "manoscope/core/units.hpp"
+#include "screen.hpp"
 
 namespace manoscope::cli {
 
@@ -20,6 +21,16 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows);
 /// the right.
 std::string text_table(const std::vector<std::vector<std::string>>& rows,
                        const std::vector<Align>& columns, std::size_t n_head = 1);
+
+/// A column of a table that may meet a narrow terminal.
+struct Column {
+  std::vector<std::string> cells;  ///< heads first
+  Align align = Align::right;
+  int rank = 0;  ///< where there is no room the highest goes first; 0 stays
+};
+void add_row(std::vector<Column>& columns, const std::vector<std::string>& cells);
+/// The columns as a table, on a terminal no more of them than fit.
+std::string text_table(std::vector<Column> columns, const Screen& screen, std::size_t n_head = 1);
 
 /// Whether no line of a text is longer than `width` characters.
 bool fits(const std::string& text, int width);

@@ -28,6 +28,22 @@ TEST(TextTable, LeavesSeveralHeadsToTheRight) {
             "    70    -\n");
 }
 
+TEST(TextTable, ANarrowTerminalLosesTheHighestRankFirst) {
+  std::vector<Column> columns{
+      {{"run"}, Align::left}, {{"long head"}, Align::right, 1}, {{"other"}, Align::right, 2}};
+  add_row(columns, {"Q5", "1", "2"});
+  Screen screen;
+  screen.columns = 5;
+  EXPECT_EQ(text_table(columns, screen), "run  long head  other\nQ5           1      2\n");
+  screen.terminal = true;
+  screen.columns = 20;
+  EXPECT_EQ(text_table(columns, screen), "run  long head\nQ5           1\n");
+  for (const int narrow : {13, 2}) {  // the last column stays, whatever the screen
+    screen.columns = narrow;
+    EXPECT_EQ(text_table(columns, screen), "run\nQ5\n");
+  }
+}
+
 TEST(TextTable, ColoursTakeNoRoom) {
   EXPECT_EQ(shown_width("\033[32mdp ± U\033[0m"), 6U);
   EXPECT_EQ(text_table({{"\033[31mab\033[0m", "c"}, {"abc", "d"}}),
