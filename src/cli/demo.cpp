@@ -73,7 +73,7 @@ void demo(const Context& context, const std::filesystem::path& out) {
   }
   print(
       fmt::format("A virtual experiment with known truth: {} maps in {}\n\n"
-                  "{}\n"
+                  "{}"
                   "{}\n"
                   "{}\n"
                   "{}\n"

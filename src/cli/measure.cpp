@@ -42,7 +42,7 @@ void add_measure(Program& program) {
     } else {
       const std::string details =
           args->details ? details_text(measurement, context.screen) : std::string();
-      print(details + (details.empty() ? "" : "\n") + summary_text(measurement, context.screen) +
+      print(details + summary_text(measurement, context.screen) +
             (context.quiet ? "" : checks_text(measurement, context.screen)));
     }
     for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);

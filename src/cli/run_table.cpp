@@ -41,12 +41,14 @@ Colour colour_of(FlowVerdict verdict) {
 
 ByFlow by_model(const Measurement& m, Index model, Index r) {
   const FlowVerdict verdict = report::flow_verdict(m, model, r);
+  const bool doubtful = std::isgreater(m.model_stated_error(model, r), report::kMostStatedError);
+  const Colour colour = colour_of(verdict);
   return {m.model_drop(model, r),
           m.model_drop_uncertainty(model, r),
           m.model_en_number(model, r),
           report::verdict_word(verdict),
-          colour_of(verdict),
-          std::isgreater(m.model_stated_error(model, r), report::kMostStatedError)};
+          doubtful && colour == Colour::green ? Colour::yellow : colour,
+          doubtful};
 }
 
 /// By eq. (4) taken as exact: what is beyond the bars may be the formula's fault.

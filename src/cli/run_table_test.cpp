@@ -78,6 +78,13 @@ TEST(RunTable, ColoursNothingButTheVerdictOnATerminal) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\033'), 6);
 }
 
+TEST(RunTable, AgreementWithADoubtfulModelIsNotGreen) {
+  results::Measurement m = four_runs();
+  m.model_stated_error(0, 0) = 0.03;
+  const std::string text = run_table(m, terminal(80));
+  EXPECT_NE(text.find("\033[33magrees\033[0m*\n"), std::string::npos) << text;
+}
+
 TEST(RunTable, KeepsDropAndVerdictOnANarrowTerminal) {
   for (const int columns : {70, 64, 60, 50, 40}) {
     const std::string text = run_table(four_runs(), terminal(columns));

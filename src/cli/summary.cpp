@@ -117,19 +117,19 @@ json snaps_json(const twin::SnapTruth& snaps) {
 }  // namespace
 
 std::string summary_text(const results::Measurement& m, const Screen& screen) {
-  std::string text = m.flow_rate.size() > 0
-                         ? run_table(m, screen)
-                         : fmt::format("calibration only: {} levels, no map under flow\n",
-                                       m.level_pressure.size());
-  if (!m.tube_law.empty()) text += wrapped("tube law: " + m.tube_law, screen.columns);
-  return text;
+  if (m.flow_rate.size() > 0) return run_table(m, screen);
+  return fmt::format("calibration only: {} levels, no map under flow\n", m.level_pressure.size());
 }
 
 std::string details_text(const results::Measurement& m, const Screen& screen) {
-  if (m.flow_rate.size() == 0) return {};
-  const std::string found = flow_findings_text(m, screen);
-  return pressure_text(m, screen) + '\n' + resistance_text(m, screen) +
-         (found.empty() ? "" : '\n' + found);
+  std::vector<std::string> parts;
+  if (m.flow_rate.size() > 0) {
+    parts = {pressure_text(m, screen), resistance_text(m, screen), flow_findings_text(m, screen)};
+  }
+  if (!m.tube_law.empty()) parts.push_back(wrapped("tube law: " + m.tube_law, screen.columns));
+  std::string text;
+  for (const std::string& part : parts) text += part.empty() ? part : part + '\n';
+  return text;
 }
 
 std::string summary_json(const results::Measurement& m, const std::filesystem::path& folder) {

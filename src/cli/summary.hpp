@@ -10,10 +10,11 @@
 
 namespace manoscope::cli {
 
-/// The runs of a measurement as one table, and the tube law.
+/// The runs of a measurement as one table.
 std::string summary_text(const results::Measurement& measurement, const Screen& screen);
 /// What stands behind it, as aligned tables with expanded uncertainty (k = 2): p(x) of every run at
-/// a few stations, its drop by eq. (4), what its flow model finds. "" without a map under flow.
+/// a few stations, its drop by eq. (4), what its flow model finds; the tube law. An empty line
+/// after each.
 std::string details_text(const results::Measurement& measurement, const Screen& screen);
 /// The runs as JSON, SI units: what drops.csv holds, checks, and what to improve first.
 std::string summary_json(const results::Measurement& measurement,

@@ -126,7 +126,7 @@ class Measure(DemoFolder):
 
     def test_one_table_has_drops_and_verdict_of_every_run(self):
         # The demo prints the same table of its own measurement.
-        table = "dp_e ± U" + self.done.stdout.split("dp_e ± U")[1].split("tube law")[0]
+        table = "dp_e ± U" + self.done.stdout.split("dp_e ± U")[1].split("\n\n")[0]
         self.assertTrue(all(len(line) <= 80 for line in table.splitlines()), table)
         for row in self.drops(self.out):
             [line] = [line for line in table.splitlines() if line.startswith(row["run"] + " ")]
