@@ -51,8 +51,9 @@ void align_by_point(Rows& rows, std::size_t c, std::size_t n_head) {
   for (std::size_t r = n_head; r < rows.size(); ++r) {
     const Parts parts = parts_of(rows[r][c]);
     rows[r][c].clear();
-    for (std::size_t k = 0; k < parts.size(); ++k)
+    for (std::size_t k = 0; k < parts.size(); ++k) {
       rows[r][c] += pad(parts[k], widths[k], kParts[k]);
+    }
   }
 }
 
@@ -138,7 +139,7 @@ bool fits(const std::string& text, int width) {
 }
 
 std::string wrapped(const std::string& text, int width) {
-  const std::size_t most = static_cast<std::size_t>(std::max(width, 0));
+  const auto most = static_cast<std::size_t>(std::max(width, 0));
   std::istringstream lines(text);
   std::string broken;
   for (std::string line; std::getline(lines, line);) {
