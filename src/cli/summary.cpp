@@ -57,7 +57,8 @@ std::string pressure_tables(const results::Measurement& m, const Screen& screen)
 }
 
 std::string pressure_text(const results::Measurement& m, const Screen& screen) {
-  std::string text = "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)\n";
+  std::string text = wrapped(
+      "Pressure along the channel, read off the wall (± U, k = 2; -: no answer)", screen.columns);
   if (!m.reading.empty()) {
     text += wrapped("read " + m.reading.substr(0, m.reading.find(": E = ")), screen.columns);
   }
