@@ -55,8 +55,12 @@ ByFlow by_model(const Measurement& m, Index model, Index r) {
 ByFlow by_resistance(const Measurement& m, Index r) {
   const double en = m.en_number[r];
   const Colour beyond = std::isfinite(en) ? Colour::yellow : Colour::none;
-  return {m.resistance_drop[r],        m.resistance_drop_uncertainty[r],   en,
-          report::resistance_word(en), en <= 1.0 ? Colour::green : beyond, false};
+  return {m.resistance_drop[r],
+          m.resistance_drop_uncertainty[r],
+          en,
+          report::resistance_word(en),
+          std::islessequal(en, 1.0) ? Colour::green : beyond,
+          false};
 }
 
 std::vector<ByFlow> by_flow(const Measurement& m) {

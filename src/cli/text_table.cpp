@@ -120,7 +120,7 @@ std::string text_table(std::vector<Column> columns, const Screen& screen, std::s
       aligns.push_back(column.align);
       for (std::size_t r = 0; r < rows.size(); ++r) rows[r].push_back(column.cells[r]);
     }
-    const std::string text = text_table(rows, aligns, n_head);
+    std::string text = text_table(rows, aligns, n_head);
     if (!screen.terminal || fits(text, screen.columns)) return text;
     const auto least =
         std::max_element(columns.begin(), columns.end(),
@@ -150,7 +150,7 @@ std::string wrapped(const std::string& text, int width) {
 
 std::string value_text(double value, double standard_uncertainty) {
   if (!std::isfinite(value)) return "-";
-  if (!(standard_uncertainty > 0.0)) return fmt::format("{:.0f}", value);
+  if (!std::isgreater(standard_uncertainty, 0.0)) return fmt::format("{:.0f}", value);
   const double expanded = kExpansion * standard_uncertainty;
   const int digits = std::max(0, 1 - static_cast<int>(std::floor(std::log10(expanded))));
   return fmt::format("{:.{}f} ± {:.{}f}", value, digits, expanded, digits);
