@@ -52,12 +52,19 @@ void leave_to_experiment(const navier_stokes::SimulationOptions& options) {
   const auto given = list_options(options),
              unset = list_options(navier_stokes::SimulationOptions{});
   for (std::size_t i = 0; i < given.size(); ++i) {
-    for (const char* name :
-         {"height", "width", "flow-rate", "viscosity", "density", "wall-shape"}) {
+    for (const char* name : {"height", "width", "flow-rate", "viscosity", "density"}) {
       if (given[i].name != name || given[i].value == unset[i].value) continue;
       throw InputError(fmt::format("--{}", name), "is told by the experiment", "Leave it out");
     }
   }
+}
+
+pipeline::RoofChoice roof_choice(const navier_stokes::SimulationOptions& options) {
+  if (options.wall_shape == "map") return pipeline::RoofChoice::map;
+  if (options.wall_shape == "response") return pipeline::RoofChoice::response;
+  if (options.wall_shape == "auto") return pipeline::RoofChoice::map_if_told;
+  throw InputError("--wall-shape", "the wall of an experiment is measured",
+                   "Choose map or response, or leave it out");
 }
 
 /// FILE for one run; for several FILE with the label of each before its ending.
@@ -72,6 +79,7 @@ fs::path vtu_file(const fs::path& file, const std::string& run, bool one) {
 void simulate_experiment(Args args, const Context& context) {
   leave_to_experiment(args.options);
   args.options.validate_solution();
+  const pipeline::RoofChoice roof = roof_choice(args.options);
   if (args.runs.empty()) {
     throw InputError("--run", "is not given", "Name a run, as --run Q70, or --run all");
   }
@@ -81,7 +89,7 @@ void simulate_experiment(Args args, const Context& context) {
       pipeline::ready_runs(experiment, args.runs, args.measure, context.threads, context.monitor);
   if (!args.out.empty()) results::check_result_of(args.out, experiment.text, ready.inputs);
   const pipeline::SimulateOptions wanted{args.options.mesh.dim, args.options.inlet,
-                                         args.options.mesh.tolerance};
+                                         args.options.mesh.tolerance, roof};
   const std::size_t n = ready.calibration.runs.size();
   std::vector<results::Simulation> done;
   for (std::size_t i = 0; i < n; ++i) {
@@ -123,7 +131,7 @@ void add_simulate(Program& program) {
                  false);
   command.option("--shape", args->shape,
                  "instead of an experiment: table with the columns x and zeta, the width-averaged "
-                 "deflection, with their units",
+                 "deflection, or x, z and zeta, a map, with their units",
                  false);
   command.option("-o,--output", args->out,
                  "of an experiment: result folder of measure, where the simulation is kept; of a "

@@ -35,8 +35,16 @@ std::string simulation_text(const std::string& answer, bool in_short) {
       value_text(drop, object.at("drop_numerical_uncertainty_Pa").get<double>()),
       object.at("converged").get<bool>() ? "converged" : "NOT CONVERGED");
   if (in_short) return text;
-  text += fmt::format("{} unknowns, {:.3g} s, {:.0f} MB\n\n", object.at("unknowns").get<int>(),
+  text += fmt::format("{} unknowns, {:.3g} s, {:.0f} MB\n", object.at("unknowns").get<int>(),
                       object.at("seconds").get<double>(), object.at("peak_MB").get<double>());
+  if (object.value("roof_across", "") == "map") {
+    text += fmt::format(
+        "Roof: the even part of the map; what is odd across, {:.3g} um rms, is left out. The cells "
+        "follow it within {:.1g} % of the gap.\n",
+        1e6 * object.at("roof_odd_m").get<double>(),
+        100.0 * object.at("roof_misfit").get<double>());
+  }
+  text += '\n';
   constexpr std::size_t kRows = 13;
   const auto x = list(object, "x_m"), gap = list(object, "gap_m");
   const auto mean = list(object, "mean_pressure_Pa"), wall = list(object, "wall_pressure_Pa");

@@ -36,7 +36,7 @@ fs::path find_solver() {
 /// A file for the solver to read, gone with the object.
 class ShapeFile {
  public:
-  ShapeFile(const Array1& x, const Array1& zeta) {
+  explicit ShapeFile(const pipeline::GivenFlow& flow) {
     std::string name = (fs::temp_directory_path() / "manoscope-shape-XXXXXX").string();
     const int file = ::mkstemp(name.data());
     if (file < 0) {
@@ -45,9 +45,7 @@ class ShapeFile {
     }
     ::close(file);
     path_ = name;
-    std::string text = "x [m],zeta [m]\n";
-    for (Index i = 0; i < x.size(); ++i) text += fmt::format("{:.17g},{:.17g}\n", x[i], zeta[i]);
-    write_file_atomically(path_, text);
+    write_file_atomically(path_, flow.z.size() > 0 ? map_text(flow) : profile_text(flow));
   }
   ~ShapeFile() {
     std::error_code ignored;
@@ -58,6 +56,23 @@ class ShapeFile {
   const fs::path& path() const { return path_; }
 
  private:
+  static std::string profile_text(const pipeline::GivenFlow& flow) {
+    std::string text = "x [m],zeta [m]\n";
+    for (Index i = 0; i < flow.x.size(); ++i) {
+      text += fmt::format("{:.17g},{:.17g}\n", flow.x[i], flow.zeta[i]);
+    }
+    return text;
+  }
+  static std::string map_text(const pipeline::GivenFlow& flow) {
+    std::string text = "x [m],z [m],zeta [m]\n";
+    for (Index i = 0; i < flow.x.size(); ++i) {
+      for (Index k = 0; k < flow.z.size(); ++k) {
+        text += fmt::format("{:.17g},{:.17g},{:.17g}\n", flow.x[i], flow.z[k], flow.roof(i, k));
+      }
+    }
+    return text;
+  }
+
   fs::path path_;
 };
 
@@ -133,9 +148,9 @@ pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
   options.viscosity = flow.fluid.viscosity;
   options.density = flow.fluid.density;
   options.inlet = flow.inlet == flow::InletProfile::uniform ? "uniform" : "developed";
-  options.wall_shape = navier_stokes::wall_shape_text(flow.wall_shape);
+  options.wall_shape = flow.z.size() > 0 ? "map" : navier_stokes::wall_shape_text(flow.wall_shape);
   options.mesh.dim = flow.dim;
-  const ShapeFile shape(flow.x, flow.zeta);
+  const ShapeFile shape(flow);
   return parsed(ask_solver(shape.path(), options, vtu, monitor));
 }
 

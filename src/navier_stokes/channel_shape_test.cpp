@@ -46,7 +46,9 @@ class ReadChannelShape : public testing::Test {
  protected:
   ChannelShape read(const std::string& text) const {
     std::ofstream(folder_ / "shape.csv") << text;
-    return read_channel_shape(folder_ / "shape.csv");
+    const ShapeTable table = read_shape_table(folder_ / "shape.csv");
+    EXPECT_FALSE(table.is_map());
+    return {table.x, table.zeta.col(0)};
   }
 
  private:
@@ -75,6 +77,43 @@ TEST_F(ReadChannelShape, NamesWhatIsWrong) {
   EXPECT_NE(message("x [mm],zeta [um]\n0,1\n1,one\n").find("shape.csv:3"), std::string::npos);
   EXPECT_NE(message("x [mm],zeta [um]\n1,1\n0,1\n").find("ascend"), std::string::npos);
   EXPECT_NE(message("x [mm],zeta [um]\n1,1\n").find("two stations"), std::string::npos);
+}
+
+TEST(ReadShapeTable, TakesAMapInAnyOrderOfItsRows) {
+  const test_support::TemporaryFolder folder;
+  const auto read = [&](const std::string& text) {
+    std::ofstream(folder / "map.csv") << text;
+    return read_shape_table(folder / "map.csv");
+  };
+  const ShapeTable map =
+      read("z [mm],x [mm],zeta [um]\n0,0,1\n0,1,2\n0.5,1,4\n0.5,0,3\n-0.5,0,5\n-0.5,1,6\n");
+  ASSERT_TRUE(map.is_map());
+  ASSERT_EQ(map.zeta.rows(), 2);
+  ASSERT_EQ(map.zeta.cols(), 3);
+  EXPECT_DOUBLE_EQ(map.z[0], -0.5e-3);
+  EXPECT_DOUBLE_EQ(map.zeta(0, 0), 5e-6);
+  EXPECT_DOUBLE_EQ(map.zeta(1, 2), 4e-6);
+  // One number printed in two ways is one place.
+  EXPECT_EQ(read("x [m],z [m],zeta [m]\n0.1,0,1\n0.10000000000000001,1,2\n").x.size(), 1);
+
+  const auto message = [&](const std::string& text) {
+    try {
+      read(text);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string head = "x [mm],z [mm],zeta [um]\n";
+  EXPECT_NE(message(head + "0,0,1\n0,1,1\n1,0,1\n").find("no row at x = 1 mm, z = 1 mm"),
+            std::string::npos);
+  EXPECT_NE(message(head + "0,0,1\n0,1,1\n0,0,2\n").find("two rows at x = 0 mm, z = 0 mm"),
+            std::string::npos);
+  std::string scattered = head;
+  for (int i = 0; i < 40; ++i) scattered += std::to_string(i) + "," + std::to_string(i) + ",1\n";
+  EXPECT_NE(message(scattered).find("no grid"), std::string::npos);
+  EXPECT_NE(message(head).find("no row"), std::string::npos);
+  EXPECT_NE(message("x [mm],z,zeta [um]\n0,0,1\n").find("column \"z\""), std::string::npos);
 }
 
 }  // namespace

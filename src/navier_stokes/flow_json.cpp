@@ -13,7 +13,7 @@ nlohmann::ordered_json list(const Array1& values) {
 
 }  // namespace
 
-std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
+std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof) {
   nlohmann::ordered_json object;
   object["dim"] = flow.dim;
   object["drop_Pa"] = flow.drop;
@@ -30,6 +30,9 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort) {
   object["floor_pressure_Pa"] = list(flow.floor_pressure);
   object["wall_shear_Pa"] = list(flow.wall_shear);
   object["floor_shear_Pa"] = list(flow.floor_shear);
+  object["roof_across"] = roof.across;
+  object["roof_odd_m"] = roof.odd_part;
+  object["roof_misfit"] = flow.roof_misfit;
   object["unknowns"] = static_cast<std::int64_t>(flow.costs.n_unknowns);
   object["newton_steps"] = flow.costs.n_newton_steps;
   object["krylov_steps"] = flow.costs.n_iterations;

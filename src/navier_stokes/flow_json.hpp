@@ -14,9 +14,15 @@ struct Effort {
   double peak_megabytes = 0.0;  ///< most memory held at a time by all processes, 10^6 bytes
 };
 
+/// Which roof the flow is below, for whoever gave a table.
+struct RoofNote {
+  std::string across;     ///< "map", "shape" or, in two dimensions, ""
+  double odd_part = 0.0;  ///< m, rms of the map's part that is odd across, which is left out
+};
+
 /// One object, SI units: "dim", "drop_Pa", "drop_numerical_uncertainty_Pa", "x_m", "gap_m",
 /// "wall_pressure_Pa", "mean_pressure_Pa" and more, as docs/simulation.md lists them.
-std::string flow_json(const SimulatedFlow& flow, const Effort& effort);
+std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof = {});
 /// {"error": {"where", "found", "mend"}}
 std::string error_json(const InputError& error);
 

@@ -6,11 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "duct_profile.hpp"
 #include "flow_mesh.hpp"
 #include "flow_solver.hpp"
 #include "manoscope/core/error.hpp"
+#include "roof_misfit.hpp"
 #include "vtu_file.hpp"
 
 namespace manoscope::navier_stokes {
@@ -76,16 +79,13 @@ class ScaledGap {
     // Both ends belong to the channel: its roof may start with a step in slope, not in height.
     constexpr double kRounding = 1e-9;
     if (place < -kRounding * length || place > (1.0 + kRounding) * length) return 1.0;
-    double zeta = given_->zeta(std::clamp(place, 0.0, length));
-    if (dim_ == 3) {
-      zeta *=
-          given_->wall_shape.value(std::min(1.0, 2.0 * z * height / given_->channel.width.si()));
-    }
-    const double gap = 1.0 + zeta / height;
+    const double across = std::min(z * height, 0.5 * given_->channel.width.si());
+    const double gap = 1.0 + given_->zeta(std::clamp(place, 0.0, length), across) / height;
     if (!(gap > 0.0)) {
       throw InputError(
           kWhere,
-          fmt::format("the gap is {:.4g} um at x = {:.4g} mm", gap * height * 1e6, place * 1e3),
+          fmt::format("the gap is {:.4g} um at x = {:.4g} mm{}", gap * height * 1e6, place * 1e3,
+                      dim_ == 3 ? fmt::format(", z = {:.4g} mm", across * 1e3) : std::string()),
           "The gap must stay open; check the sign of zeta and the height");
     }
     return gap;
@@ -161,12 +161,34 @@ Vector<dim> near_flow(const ScaledGap& gap, const std::vector<double>& z_edges, 
   return velocity;
 }
 
+/// Of the mesh with these ends of cells.
+template <int dim>
+RoofMisfit misfit_of(const SimulatedChannel& given,
+                     const std::array<std::vector<double>, dim>& ends, int order) {
+  std::vector<double> across;
+  if constexpr (dim == 3) across = ends[2];
+  return roof_misfit(ScaledGap(given, dim), ends[0], across, order);
+}
+
+/// A flow below another roof is none of this channel's, however fine its drop.
+void require_resolved(const RoofMisfit& misfit, double height) {
+  constexpr double kMost = 0.05;
+  if (misfit.share <= kMost) return;
+  throw InputError(
+      kWhere,
+      fmt::format("the roof is too steep for its cells: they miss it by {:.2g} % of the gap at x = "
+                  "{:.4g} mm, z = {:.4g} mm",
+                  100.0 * misfit.share, misfit.x * height * 1e3, misfit.z * height * 1e3),
+      "Take more cells (--cells-along, --cells-across), or give a smoother shape");
+}
+
 template <int dim>
 FlowProblem<dim> problem_of(const SimulatedChannel& given, const Cells& cells,
                             const MeshOptions& mesh) {
   FlowProblem<dim> problem;
   problem.edges = edges<dim>(given, cells);
   problem.place = below_roof<dim>(ScaledGap(given, dim));
+  require_resolved(misfit_of<dim>(given, problem.edges, mesh.order), given.channel.height.si());
   problem.reynolds = Scales(given).reynolds;
   problem.order = mesh.order;
   problem.solver = solver_of(mesh, cells);
@@ -252,6 +274,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
 
   constexpr double kMeshRatio = 1.5, kUncertainty = 1.0 / (kMeshRatio - 1.0);
   result.dim = dim;
+  result.roof_misfit = misfit_of<dim>(given, edges<dim>(given, fine), mesh.order).share;
   result.x = stations;
   result.gap = stations;
   const ScaledGap gap(given, dim);

@@ -10,19 +10,19 @@
 #include "manoscope/core/units.hpp"
 #include "manoscope/flow/channel.hpp"
 #include "manoscope/flow/marching.hpp"
-#include "manoscope/flow/roof.hpp"
 #include "simulation_options.hpp"
 
 namespace manoscope::navier_stokes {
 
 /// A channel whose wall stands still in a given shape, and the flow through it.
 ///
-/// x runs from 0 to channel.length; the gap is height + zeta(x) g(2 z/w), in two dimensions height
-/// + zeta(x). Rigid straight ducts of gap `height` may lie before and behind.
+/// x runs from 0 to channel.length; the gap is height + zeta(x, z). Rigid straight ducts of gap
+/// `height` may lie before and behind.
 struct SimulatedChannel {
   flow::Channel channel;
-  std::function<double(double x)> zeta;  ///< width-averaged deflection, m, for x in m
-  flow::WallShape wall_shape = flow::WallShape::parabola();  ///< g, in three dimensions
+  /// Deflection, m, for x and z in m; in three dimensions even in z and asked for z >= 0 alone, in
+  /// two width-averaged and asked for z = 0. Asked from several threads at once.
+  std::function<double(double x, double z)> zeta;
   flow::Fluid fluid{1.0 * mPa_s, 998.0 * kg_per_m3};
   FlowRate flow_rate{};
   Length lead_in{}, lead_out{};
@@ -44,6 +44,7 @@ struct SimulatedFlow {
   double drop = 0.0;              ///< Pa: mean pressure at x = 0 less that at x = length
   double drop_uncertainty = 0.0;  ///< Pa: numerical, k = 1
   double coarse_drop = 0.0;       ///< Pa: on the coarser mesh
+  double roof_misfit = 0.0;       ///< RoofMisfit::share of the finer mesh
   bool converged = false;         ///< drop_uncertainty is within the tolerance asked for
   FlowCosts costs;                ///< of both meshes; unknowns of the finer
 };
@@ -76,7 +77,8 @@ struct SimulationFiles {
 ///
 /// @param stations  (n) x, m, in [0, length].
 /// @param files     what else it writes.
-/// @throws InputError for what is out of range, a gap that closes, or if no steady flow is found.
+/// @throws InputError for what is out of range, a gap that closes, a roof that the cells do not
+///         follow within 5 % of the gap, or if no steady flow is found.
 SimulatedFlow simulate(const SimulatedChannel& channel, const Array1& stations,
                        const MeshOptions& mesh, const SimulationFiles& files = {},
                        const Monitor& monitor = {});

@@ -24,10 +24,16 @@ double bulge(double x) {
          (1.0 - std::exp(-(length - x) / end));
 }
 
-SimulatedChannel channel_at(double mL_per_minute) {
+/// The roof of that average, a parabola across in three dimensions.
+double bulged_roof(double x, double z, int dim) {
+  const double s = 2.0 * z / kChannel.width.si();
+  return dim == 2 ? bulge(x) : 1.5 * (1.0 - s * s) * bulge(x);
+}
+
+SimulatedChannel channel_at(double mL_per_minute, int dim = 2) {
   SimulatedChannel channel;
   channel.channel = kChannel;
-  channel.zeta = bulge;
+  channel.zeta = [dim](double x, double z) { return bulged_roof(x, z, dim); };
   channel.flow_rate = mL_per_minute * mL_per_min;
   return channel;
 }
@@ -109,7 +115,7 @@ TEST_F(SimulateFlow, OfABulgedGapIsWithin005PercentOfIndependentSolutions) {
 
 TEST_F(SimulateFlow, OfAFlatGapIsExact) {
   SimulatedChannel channel = channel_at(70.0);
-  channel.zeta = [](double) { return 0.0; };
+  channel.zeta = [](double, double) { return 0.0; };
   const Array1 stations = Array1::LinSpaced(11, 0.0, kChannel.length.si());
   const SimulatedFlow flow = simulate(channel, stations, MeshOptions{});
   const double h = kChannel.height.si();
@@ -129,7 +135,7 @@ TEST_F(SimulateFlow, DevelopsFromAUniformProfileAsAnIndependentSolutionDoes) {
     if (rows.empty()) GTEST_SKIP() << "no reference flow " << name;
     rows.erase(rows.begin());  // x = 0, the edge itself
     SimulatedChannel channel = channel_at(flow_rate);
-    channel.zeta = [](double) { return 0.0; };
+    channel.zeta = [](double, double) { return 0.0; };
     channel.inlet = flow::InletProfile::uniform;
     channel.lead_in = 3.0 * kChannel.height;
     channel.lead_in_slips = true;
@@ -149,7 +155,7 @@ TEST_F(SimulateFlow, InThreeDimensionsIsNearAnIndependentSolutionOnACoarseMesh) 
   mesh.cells_along = 30;
   mesh.cells_up = 3;
   mesh.cells_across = 5;
-  const SimulatedFlow flow = simulate(channel_at(5.0), stations_of(rows), mesh);
+  const SimulatedFlow flow = simulate(channel_at(5.0, 3), stations_of(rows), mesh);
   const Agreement found = agreement(flow, rows, 3e-3);
   record("caseD_Q5.csv", found, flow);
   EXPECT_LT(found.mean, 3e-3);
@@ -165,7 +171,7 @@ TEST_F(SimulateFlow, DISABLED_InThreeDimensionsAgreesWithIndependentSolutions) {
     if (rows.empty()) GTEST_SKIP() << "no reference flow " << name;
     MeshOptions mesh;
     mesh.dim = 3;
-    const SimulatedFlow flow = simulate(channel_at(flow_rate), stations_of(rows), mesh);
+    const SimulatedFlow flow = simulate(channel_at(flow_rate, 3), stations_of(rows), mesh);
     const Agreement found = agreement(flow, rows, 5e-3);
     record(name, found, flow);
     EXPECT_LT(found.mean, 5e-3) << name;
@@ -178,7 +184,7 @@ TEST_F(SimulateFlow, RefusesAGapThatClosesAndNamesTheFirstPlace) {
   SimulatedChannel channel = channel_at(5.0);
   const double length = channel.channel.length.si();
   for (const double closed_from : {0.0, 0.5, 0.9}) {
-    channel.zeta = [&](double x) { return x < closed_from * length ? 0.0 : -180e-6; };
+    channel.zeta = [&](double x, double) { return x < closed_from * length ? 0.0 : -180e-6; };
     try {
       simulate(channel, Array1::Zero(1), MeshOptions{});
       FAIL() << "flows through a closed gap";
@@ -189,6 +195,21 @@ TEST_F(SimulateFlow, RefusesAGapThatClosesAndNamesTheFirstPlace) {
       const double place = std::stod(error.found().substr(at + 4)) * 1e-3;
       EXPECT_NEAR(place, closed_from * length, 0.05 * length) << error.what();
     }
+  }
+}
+
+TEST_F(SimulateFlow, RefusesARoofTooSteepForItsCells) {
+  SimulatedChannel channel = channel_at(5.0);
+  // A step of 60 um within 20 um, where cells are 0.2 mm long.
+  channel.zeta = [](double x, double) { return 30e-6 * (1.0 + std::tanh((x - 7.7e-3) / 10e-6)); };
+  try {
+    simulate(channel, Array1::Zero(1), MeshOptions{});
+    FAIL() << "flows below a roof that the mesh does not have";
+  } catch (const InputError& error) {
+    const auto at = error.found().find("x = ");
+    ASSERT_NE(at, std::string::npos) << error.what();
+    EXPECT_NEAR(std::stod(error.found().substr(at + 4)), 7.7, 0.3) << error.what();
+    EXPECT_NE(error.mend().find("--cells-along"), std::string::npos);
   }
 }
 

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "channel_shape.hpp"
 #include "flow_json.hpp"
 #include "flow_simulation.hpp"
+#include "given_wall.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
@@ -34,8 +34,8 @@ void help() {
   fmt::print(
       "usage: manoscope-navier-stokes SHAPE --height H --width W --flow-rate Q [OPTION "
       "VALUE]...\n\n"
-      "Steady laminar flow below the wall whose deflection SHAPE tells (columns x, zeta), as "
-      "JSON.\n"
+      "Steady laminar flow below the wall whose deflection SHAPE tells (columns x, zeta; of a map "
+      "x, z, zeta), as JSON.\n"
       "  --vtu FILE         writes velocity and pressure for ParaView\n"
       "  --checkpoint FILE  keeps the state there, and goes on from it\n");
   for (const OptionInfo& option : list_options(SimulationOptions{})) {
@@ -66,7 +66,7 @@ CommandLine read_words(const std::vector<std::string>& words) {
   }
   if (line.shape.empty()) {
     throw InputError("command line", "no shape is named",
-                     "Name a table with the columns x and zeta; see --help");
+                     "Name a table with the columns x and zeta, or x, z and zeta; see --help");
   }
   line.options.validate();
   if (line.options.inlet == "both") {
@@ -76,16 +76,15 @@ CommandLine read_words(const std::vector<std::string>& words) {
   return line;
 }
 
-SimulatedChannel channel_of(const ChannelShape& shape, const SimulationOptions& options) {
+SimulatedChannel channel_of(const GivenWall& wall, const SimulationOptions& options) {
   SimulatedChannel channel;
-  channel.channel = {Length::from_si(shape.length()), options.width, options.height};
-  channel.zeta = [&shape](double x) { return shape.value(shape.x()[0] + x); };
+  channel.channel = {Length::from_si(wall.length()), options.width, options.height};
+  channel.zeta = wall.zeta(options);
   channel.fluid = {options.viscosity, options.density};
   channel.flow_rate = options.flow_rate;
   channel.lead_in = options.lead_in;
   channel.lead_out = options.lead_out;
   channel.lead_in_slips = options.lead_in_slips;
-  channel.wall_shape = wall_shape_of(options);
   channel.inlet =
       options.inlet == "uniform" ? flow::InletProfile::uniform : flow::InletProfile::developed;
   return channel;
@@ -122,17 +121,17 @@ void print_answer(const std::string& text) {
 void run(const std::vector<std::string>& words) {
   const auto start = std::chrono::steady_clock::now();
   CommandLine line = read_words(words);
-  const ChannelShape shape = read_channel_shape(line.shape);
-  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, shape.length());
+  const GivenWall wall(read_shape_table(line.shape), line.options);
+  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, wall.length());
   SimulatedFlow flow =
-      simulate(channel_of(shape, line.options), stations, line.options.mesh, line.files);
-  flow.x += shape.x()[0];
+      simulate(channel_of(wall, line.options), stations, line.options.mesh, line.files);
+  flow.x += wall.start();
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const Processes& processes = Processes::all();
   const Effort effort{processes.size(), taken.count(), processes.sum(peak_megabytes())};
   together(processes.comm(), [&] {
     if (!processes.is_lead()) return;
-    print_answer(flow_json(flow, effort));
+    print_answer(flow_json(flow, effort, wall.note(line.options)));
     if (line.files.checkpoint.empty()) return;
     std::filesystem::remove(line.files.checkpoint);
     std::filesystem::remove(line.files.checkpoint += ".coarse");

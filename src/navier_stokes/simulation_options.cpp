@@ -80,8 +80,15 @@ void SimulationOptions::validate_solution() const {
   mesh.validate();
 }
 
+bool leaves_wall_shape(const SimulationOptions& options) {
+  constexpr const char* kOpen[] = {"auto", "map", "response"};
+  return std::find(std::begin(kOpen), std::end(kOpen), options.wall_shape) != std::end(kOpen);
+}
+
 flow::WallShape wall_shape_of(const SimulationOptions& options) {
-  if (options.wall_shape == "parabola") return flow::WallShape::parabola();
+  if (leaves_wall_shape(options) || options.wall_shape == "parabola") {
+    return flow::WallShape::parabola();
+  }
   constexpr std::size_t kMost = 12;
   std::vector<double> coefficients;
   const char* at = options.wall_shape.data();
@@ -95,7 +102,7 @@ flow::WallShape wall_shape_of(const SimulationOptions& options) {
   }
   if (at != end || coefficients.empty() || options.wall_shape.back() == ',') {
     throw InputError("--wall-shape", fmt::format("\"{}\" is no shape", options.wall_shape),
-                     "Give parabola, or up to 12 numbers with commas, as 1,-2,1");
+                     "Give map, parabola, or up to 12 numbers with commas, as 1,-2,1");
   }
   return flow::WallShape(std::move(coefficients));
 }

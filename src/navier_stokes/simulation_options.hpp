@@ -29,7 +29,7 @@ struct SimulationOptions {
   Viscosity viscosity = 1.0 * mPa_s;
   Density density = 998.0 * kg_per_m3;
   std::string inlet = "auto";
-  std::string wall_shape = "parabola";
+  std::string wall_shape = "auto";
   Length lead_in{};
   Length lead_out{};
   bool lead_in_slips = false;
@@ -49,8 +49,10 @@ struct SimulationOptions {
           "profile where the flow enters: developed, uniform, or both, one after the other; auto: "
           "what an experiment leaves open, else developed");
     visit("wall-shape", wall_shape,
-          "roof across in three dimensions: parabola, or the coefficients of 1, s^2, s^4.., s = 2 "
-          "z/width, as 1,-2,1");
+          "roof across in three dimensions: map, as the maps of the run or the table show it; "
+          "response, of an experiment one shape, that between lowest and highest level; of a table "
+          "without a map parabola, or the coefficients of 1, s^2, s^4.., s = 2 z/width, as 1,-2,1; "
+          "auto: map where there is one, else response or parabola");
     visit("lead-in", lead_in, "length of a rigid straight duct before the channel");
     visit("lead-out", lead_out, "length of a rigid straight duct behind the channel");
     visit("lead-in-slips", lead_in_slips,
@@ -71,7 +73,9 @@ struct SimulationOptions {
   void validate_solution() const;
 };
 
-/// The shape that `wall_shape` tells.
+/// Whether `wall_shape` names no shape of its own but "auto", "map" or "response".
+bool leaves_wall_shape(const SimulationOptions& options);
+/// The shape that `wall_shape` tells; a parabola where it leaves that open.
 /// @throws InputError for text that is none.
 flow::WallShape wall_shape_of(const SimulationOptions& options);
 /// The text that wall_shape_of() reads back, every digit.

@@ -57,6 +57,7 @@ TEST(SimulationOptions, SaysWhatIsMissing) {
 TEST(SimulationOptions, ReadBackAWallShapeToTheLastDigit) {
   SimulationOptions options;
   EXPECT_EQ(wall_shape_of(options).coefficients(), flow::WallShape::parabola().coefficients());
+  EXPECT_TRUE(leaves_wall_shape(options));
   const flow::WallShape shape({1.0, -1.9, 0.7, 0.2});
   options.wall_shape = wall_shape_text(shape);
   const flow::WallShape again = wall_shape_of(options);

@@ -60,6 +60,7 @@ class SimulateExperiment(DemoFolder):
                 ((self.experiment, "--run", "Q5", "--height", "175um"), "--height"),
                 ((self.experiment, "--run", "Q5", "--inlet", "slanted"), "--inlet"),
                 ((self.experiment, "--run", "Q5", "--dim", "4"), "--dim"),
+                ((self.experiment, "--run", "Q5", "--wall-shape", "parabola"), "measured"),
         ):
             done = run("simulate", *arguments, check_code=2)
             self.assertEqual(done.stdout, "")
@@ -137,6 +138,31 @@ class SimulateExperiment(DemoFolder):
         self.assertAlmostEqual(flows["both"]["inlet_effect_Pa"][0],
                                drops["uniform"] - drops["developed"], places=6)
         self.assertEqual(set(flows["uniform"]["inlet_effect_Pa"]), {0.0})
+
+    @NEEDS_SOLVER
+    def test_in_three_dimensions_the_roof_is_the_map_or_one_shape(self):
+        cells = ("--dim", "3", "--inlet", "developed", "--cells-along", "20", "--cells-up", "2",
+                 "--cells-across", "4")
+        flows = {}
+        for shape in ("auto", "map", "response"):
+            done = run("simulate", self.experiment, "--run", "Q5", "--wall-shape", shape, "--json",
+                       *cells, check_code=0)
+            flows[shape] = json.loads(done.stdout)
+        roof, one = flows["map"], flows["response"]
+        self.assertEqual(flows["auto"]["drop_Pa"], roof["drop_Pa"])
+        self.assertTrue(roof["roof_map"])
+        self.assertFalse(one["roof_map"])
+        self.assertIsNone(one["roof_taken_m"])
+        self.assertIn("its own maps", roof["shape"])
+        self.assertIn("crest", one["shape"])
+        # Noise was taken away, and nothing else.
+        self.assertLess(roof["roof_taken_m"], 1.2 * roof["roof_noise_m"])
+        self.assertLess(roof["roof_misfit"], 1.3)
+        # What the resistance of the sections says of it: side layers and inertia are a part of it.
+        change = roof["drop_Pa"] / one["drop_Pa"] - 1
+        self.assertAlmostEqual(change, roof["roof_effect"], delta=0.2 * abs(change) + 2e-4)
+        self.assertGreater(
+            roof["test_section"][0]["drop_uncertainty_parts_Pa"]["roof across"], 0)
 
     @NEEDS_SOLVER
     def test_table_picture_and_terminal(self):

@@ -28,6 +28,24 @@ class Simulate(Folder):
                 file.write(f"{x:.6f},{zeta:.9f}\n")
         return path
 
+    def map(self, askew=0.0, dent_um=0.0):
+        """The same bulge as a map, a parabola across, seen by a camera whose rows are 17 um."""
+        path = self.folder / f"map_{askew}_{dent_um}.csv"
+        length, rows = 15.5, 100
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("x [mm],z [mm],zeta [um]\n")
+            for i in range(201):
+                x = length * i / 200
+                mean = (33.0 * (1 - 0.6 * x / length) * (1 - math.exp(-x / 0.6))
+                        * (1 - math.exp(-(length - x) / 0.6)))
+                for k in range(rows):
+                    s = (2 * k + 1) / rows - 1
+                    zeta = 1.5 * mean * (1 - s * s) * (1 + askew * s)
+                    if dent_um and i == 100 and k == 30:
+                        zeta = dent_um
+                    file.write(f"{x:.6f},{0.85 * s:.6f},{zeta:.9f}\n")
+        return path
+
     def test_what_is_missing_or_wrong_is_said(self):
         shape = self.shape()
         for arguments, text in (
@@ -93,6 +111,45 @@ class Simulate(Folder):
         done = run("simulate", "--shape", self.shape(-300.0), *CHANNEL, check_code=2)
         self.assertIn("gap", done.stderr)
         self.assertEqual(done.stdout, "")
+
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    def test_a_map_is_the_roof_in_three_dimensions_and_its_mean_in_two(self):
+        solve = lambda *arguments: json.loads(  # noqa: E731
+            run("simulate", *CHANNEL, "--json", *arguments, check_code=0).stdout)
+        plane = ("--cells-along", "40", "--cells-up", "4")
+        whole = ("--dim", "3", "--cells-along", "20", "--cells-up", "2", "--cells-across", "4")
+        shape, roof = self.shape(), self.map()
+        for cells, kind in ((plane, ""), (whole, "map")):
+            by_shape = solve("--shape", shape, *cells)
+            by_map = solve("--shape", roof, *cells)
+            # Between the rows the map is known to spacing^4, at the sides by two rows.
+            self.assertAlmostEqual(by_map["drop_Pa"] / by_shape["drop_Pa"], 1, delta=2e-5)
+            self.assertEqual(by_map["roof_across"], kind)
+        self.assertLess(by_map["roof_odd_m"], 1e-9)
+        self.assertLess(by_map["roof_misfit"], 1e-3)
+        askew = self.map(askew=0.2)
+        told = run("simulate", *CHANNEL, "--shape", askew, *whole, check_code=0)
+        self.assertIn("what is odd across", told.stdout)
+        # Its even part is the parabola, and half the channel is solved.
+        half = solve("--shape", askew, *whole)
+        self.assertAlmostEqual(half["drop_Pa"] / by_map["drop_Pa"], 1, delta=1e-9)
+        self.assertGreater(half["roof_odd_m"], 1e-6)
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    def test_a_map_that_cannot_be_is_the_users_fault(self):
+        for arguments, text in (
+                (("--shape", self.map(dent_um=-200.0)), "x = 7.75 mm, z = -0.3315 mm"),
+                (("--shape", self.map(), "--wall-shape", "1,-2,1"), "beside a map"),
+                (("--shape", self.map(), "--wall-shape", "response"), "experiment"),
+                (("--shape", self.map(), "--width", "2.4mm"), "side to side"),
+                (("--shape", self.shape(), "--wall-shape", "map"), "column z"),
+        ):
+            done = run("simulate", *CHANNEL[:2], *CHANNEL[4:], "--dim", "3",
+                       *(("--width", "1.7mm") if "--width" not in arguments else ()), *arguments,
+                       check_code=2)
+            self.assertIn(text, done.stderr)
+            self.assertEqual(done.stdout, "")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "manoscope/core/arrays.hpp"
 
 namespace manoscope {
@@ -17,5 +19,9 @@ struct CrossSections {
 
   bool empty() const { return x.size() == 0; }
 };
+
+/// Mean of repeats of the same state, cell by cell over those that count; x is the mean of theirs.
+/// @param repeats  of the same cells; at least one. Empty ones are left out.
+CrossSections mean_sections(const std::vector<CrossSections>& repeats);
 
 }  // namespace manoscope

@@ -40,7 +40,12 @@ SmoothingSpline::SmoothingSpline(NoisyValues data, const Array1& knots,
   MANO_ASSERT(!bends.empty() && finest_ripple > 0.0 && data_.x.size() >= 4);
   MANO_ASSERT(data_.y.size() == data_.x.size() && data_.sigma.size() == data_.x.size());
   MANO_ASSERT(data_.sigma.minCoeff() > 0.0);
-  model_ = sampling(data_.x);
+  if (data_.window.size() == 0) {
+    model_ = sampling(data_.x);
+  } else {  // by Gauss' rule of two points, exact for cubics
+    const Array1 reach = data_.window / (2.0 * std::numbers::sqrt3);
+    model_ = 0.5 * (sampling(data_.x - reach) + sampling(data_.x + reach));
+  }
   const Array1 weight = data_.sigma.square().inverse();
   const Matrix weighted = weight.matrix().asDiagonal() * model_;
   const NormalEquations equations{model_.transpose() * weighted,

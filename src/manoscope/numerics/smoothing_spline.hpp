@@ -13,6 +13,8 @@ struct NoisyValues {
   Array1 x;      ///< (n)
   Array1 y;      ///< (n)
   Array1 sigma;  ///< (n) standard deviations, > 0
+  /// (n) y is the mean of the curve over this length about x; empty: its value there.
+  Array1 window = {};
 };
 
 /// A smooth curve through noisy values: as rough as they make likely, and no rougher.

@@ -104,5 +104,18 @@ TEST(SmoothingSpline, StandsWhereAValueHasNextToNoError) {
   EXPECT_LT(ends.abs().maxCoeff(), 4e-4);
 }
 
+TEST(SmoothingSpline, TakesMeansOverAWindowForWhatTheyAre) {
+  // Means of a parabola over a window are off its values by a third of the square of half of it.
+  const Array1 x = Array1::LinSpaced(kData, 0.05, 0.95);
+  const double window = 0.1;
+  NoisyValues data{x, x.square() + window * window / 12.0, Array1::Constant(kData, 1e-6),
+                   Array1::Constant(kData, window)};
+  const SmoothingSpline smooth(data, knots(), {Array1::Ones(kKnots - 2)}, 0.02);
+  // Away from the ends, where the spline has no second derivative.
+  const Array1 at = Array1::LinSpaced(33, 0.3, 0.7);
+  const double off = window * window / 12.0;
+  EXPECT_LT((smooth.value(at) - at.square()).abs().maxCoeff(), 0.01 * off);
+}
+
 }  // namespace
 }  // namespace manoscope::numerics

@@ -61,17 +61,32 @@ Array1 told_stations(const flow::Channel& channel) {
   return Array1::LinSpaced(static_cast<Index>(n), 0.0, channel.length.si());
 }
 
-std::string roof_words(const validation::SmoothShape& shape, const FlowKnowledge& known, int dim) {
-  std::string words = fmt::format(
+/// Positions across at which it is told the roof, from the middle to the side, denser there.
+Array1 told_across(const flow::Channel& channel) {
+  constexpr Index kPositions = 33;
+  return 0.5 * channel.width.si() *
+         (Array1::LinSpaced(kPositions, 0.0, 1.0) * (0.5 * std::numbers::pi)).sin();
+}
+
+std::string roof_words(const validation::SmoothShape& shape) {
+  return fmt::format(
       "zeta(x) without ripples shorter than {:.3g} mm (half is left there): {:.2g} nm rms taken "
       "away, stated noise {:.2g} nm",
       shape.half_wavelength().in(mm), shape.taken().in(nm), shape.noise().in(nm));
-  if (dim == 3) {
-    words +=
-        fmt::format("; across as between lowest and highest level, crest {:.3g} times the mean",
-                    known.setup.shape.crest());
-  }
-  return words;
+}
+
+void store_roof(const RunRoof& roof, Simulation& s) {
+  s.roof += "; " + roof.words;
+  if (!roof.map) return;
+  s.roof_map = 1.0;
+  s.roof_taken = roof.map->taken().si();
+  s.roof_noise = roof.map->noise().si();
+  s.roof_misfit = roof.map->misfit();
+  s.roof_departure = roof.map->departure().si();
+  s.roof_effect = roof.effect->departure;
+  s.roof_odd = roof.map->odd().si();
+  s.roof_odd_uncertainty = roof.map->odd_standard().si();
+  s.roof_odd_effect = roof.effect->odd;
 }
 
 /// What one standard deviation of the numerical error does, with the sign in which meshes moved it.
@@ -165,6 +180,13 @@ Simulation simulate_run(const Experiment& experiment, const ReadyRuns& ready, st
                   inlets.leading,
                   true};
   given.zeta = shape.zeta(given.x);
+  RunRoof roof;
+  if (options.dim == 3) roof = roof_of_run(run, shape, ready.flow, options.roof);
+  if (roof.map) {
+    given.z = told_across(channel);
+    given.roof = roof.map->even(given.x, given.z);
+    validation::require_open_gap(given.x, given.z, given.roof, channel.height);
+  }
   const auto solve = [&](InletProfile profile, bool leading) {
     monitor.checkpoint();
     monitor.report(fmt::format("{}: Navier-Stokes, {} inlet", run.name, profile_name(profile)),
@@ -181,7 +203,8 @@ Simulation simulate_run(const Experiment& experiment, const ReadyRuns& ready, st
   s.experiment = experiment.text;
   s.inputs = ready.inputs;
   s.inlet = inlets.words;
-  s.roof = roof_words(shape, ready.flow, options.dim);
+  s.roof = roof_words(shape);
+  if (options.dim == 3) store_roof(roof, s);
   s.dim = options.dim;
   s.flow_rate = run.flow_rate.si();
   s.smoothing_half_wavelength = shape.half_wavelength().si();
@@ -207,8 +230,11 @@ Simulation simulate_run(const Experiment& experiment, const ReadyRuns& ready, st
     s.peak_memory = std::max(s.peak_memory, other.peak_memory);
   }
   // About the end of a rectangular distribution the mean square is a third of its width squared.
-  const validation::SolvedPressure pressure{solved.x, solved.mean_pressure, mesh_effect(solved),
-                                            s.inlet_effect / std::numbers::sqrt3, options.dim == 2};
+  validation::SolvedPressure pressure{solved.x, solved.mean_pressure, mesh_effect(solved),
+                                      s.inlet_effect / std::numbers::sqrt3, options.dim == 2};
+  if (roof.map) {
+    pressure.roof_across = between(roof.effect->x, roof.effect->pressure_error, solved.x);
+  }
   const validation::SimulationComparison comparison =
       validation::compare_simulation(ready.flow.setup, run.flow_rate, shape, run.profile, pressure,
                                      outlet, found.reading, found.section);
@@ -238,6 +264,20 @@ std::vector<std::string> simulation_doubts(const Simulation& s, const Experiment
         "{}: smoothing took {:.2g} nm rms away, {:.1f} times the stated noise: the profile holds "
         "ripples shorter than two heights, and the simulation does not see them",
         s.run, s.smoothing_taken * 1e9, s.smoothing_taken / s.smoothing_noise));
+  }
+  if (s.roof_map != 0.0 && s.roof_misfit > kRough) {
+    doubts.push_back(fmt::format(
+        "{}: {:.2g} nm rms of the shape across are no smooth departure from the shape between the "
+        "levels, {:.1f} times the stated noise: the roof does not hold them",
+        s.run, s.roof_taken * 1e9, s.roof_misfit));
+  }
+  constexpr double kSigmas = 4.0, kFelt = 5e-4;  // of the drop
+  if (s.roof_map != 0.0 && s.roof_odd > kSigmas * s.roof_odd_uncertainty &&
+      std::abs(s.roof_odd_effect) > kFelt) {
+    doubts.push_back(fmt::format(
+        "{}: the wall is not symmetric across, by {:.2g} um rms; half the channel is solved, and "
+        "what is odd, {:+.1g} % of the drop, is left out",
+        s.run, s.roof_odd * 1e6, 100.0 * s.roof_odd_effect));
   }
   if (s.longest_silence > experiment.channel.width.si()) {
     doubts.push_back(

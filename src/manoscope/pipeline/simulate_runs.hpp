@@ -11,6 +11,7 @@
 #include "manoscope/flow/roof.hpp"
 #include "manoscope/pipeline/measure_options.hpp"
 #include "manoscope/pipeline/read_runs.hpp"
+#include "manoscope/pipeline/roof_of_run.hpp"
 #include "manoscope/results/simulation.hpp"
 
 namespace manoscope::pipeline {
@@ -25,6 +26,10 @@ struct GivenFlow {
   flow::WallShape wall_shape = flow::WallShape::parabola();  ///< across, in three dimensions
   flow::InletProfile inlet = flow::InletProfile::developed;
   bool leading = true;  ///< the one of this run whose pressure is reported, not its inlet's spread
+  /// (n_z) m, from the middle to the side, and (n, n_z) m, smooth: the roof in three dimensions,
+  /// in place of zeta and wall_shape. Empty: there is none.
+  Array1 z = {};
+  Array2 roof = {};
 };
 
 /// What the solver answers. Arrays are (n) on its stations from 0 to the length, SI; pressures are
@@ -51,6 +56,7 @@ struct SimulateOptions {
   /// What the other inlet's numerical uncertainty may add over the test section, of the drop of the
   /// channel; the solver judges the leading flow itself.
   double tolerance = 5e-3;
+  RoofChoice roof = RoofChoice::map_if_told;  ///< in three dimensions
 };
 
 /// An experiment calibrated and its chosen runs read, ready for a solver.
@@ -73,8 +79,8 @@ ReadyRuns ready_runs(const experiment::Experiment& experiment,
 /// and holds it against the reading.
 ///
 /// The wall is validation::SmoothShape of the run's profile; in three dimensions it is bent across
-/// as between the lowest and the highest level (FlowKnowledge). The pressure at the channel's end
-/// is that of the flow models (outlet_of()). Uncertainty: validation::compare_simulation().
+/// as roof_of_run() says. The pressure at the channel's end is that of the flow models
+/// (outlet_of()). Uncertainty: validation::compare_simulation().
 ///
 /// @param which   index of the run.
 /// @throws InputError if the profile cannot be used, and as the solver.

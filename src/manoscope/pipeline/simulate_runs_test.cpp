@@ -184,6 +184,42 @@ TEST_F(SimulateRuns, TellTheSolverTheChannelAndItsSmoothWall) {
   EXPECT_NEAR(s.read_pressure[middle] / s.pressure(1, middle), 1.0, 0.05);
 }
 
+TEST_F(SimulateRuns, InThreeDimensionsTellTheSolverTheMapOfTheRoof) {
+  Asked map, one_shape, plane;
+  const Simulation s = simulate(1, {3, "developed"}, map.solver());
+  const GivenFlow& given = map.flows.at(0);
+  ASSERT_EQ(given.roof.rows(), given.x.size());
+  ASSERT_EQ(given.roof.cols(), given.z.size());
+  EXPECT_EQ(given.z[0], 0.0);
+  EXPECT_NEAR(given.z[given.z.size() - 1] / given.channel.width.si(), 0.5, 1e-15);
+  EXPECT_LT(given.roof.rightCols(1).abs().maxCoeff(), 1e-15);
+  // This wall is a parabola across everywhere, of the width average that the plane has.
+  const Array1 across = 1.5 * (1.0 - (2.0 / given.channel.width.si() * given.z).square());
+  const Array2 parabola = (given.zeta.matrix() * across.matrix().transpose()).array();
+  EXPECT_LT(std::sqrt((given.roof - parabola).square().mean()), 1e-3 * given.zeta.maxCoeff());
+  EXPECT_EQ(s.roof_map, 1.0);
+  EXPECT_LT(s.roof_misfit, 1.3);
+  EXPECT_LT(std::abs(s.roof_effect), 1e-3);
+  // A wall that answers to p(x) alone ends in a step, which no smooth roof holds.
+  EXPECT_LT(s.roof_taken, 2.0 * s.roof_noise);
+  EXPECT_NE(s.roof.find("its own maps"), std::string::npos) << s.roof;
+  const auto last = s.error_source.size() - 1;
+  ASSERT_EQ(s.error_source[last], "roof across");
+  EXPECT_GT(s.pressure_variance[last](0, 0), 0.0);
+  EXPECT_LT(std::sqrt(s.pressure_variance[last](0, 0)), 1e-3 * s.channel_drop);
+
+  SimulateOptions without{3, "developed"};
+  without.roof = RoofChoice::response;
+  const Simulation flat = simulate(1, without, one_shape.solver());
+  EXPECT_EQ(one_shape.flows.at(0).z.size(), 0);
+  EXPECT_EQ(flat.roof_map, 0.0);
+  EXPECT_TRUE(std::isnan(flat.roof_taken));
+  EXPECT_NE(flat.roof.find("crest"), std::string::npos) << flat.roof;
+  EXPECT_EQ(flat.pressure_variance[last](0, 0), 0.0);
+  simulate(1, {2, "developed"}, plane.solver());
+  EXPECT_EQ(plane.flows.at(0).z.size(), 0);
+}
+
 TEST_F(SimulateRuns, PartsOfTheUncertaintyAddUp) {
   const Simulation s = simulate(1, {2, "auto"});
   Array2 variance = Array2::Zero(2, s.x.size());
@@ -230,6 +266,18 @@ TEST_F(SimulateRuns, DoubtsWhatIsNotConvergedOrRougherThanItsNoise) {
   s.smoothing_taken = 2.0 * s.smoothing_noise;
   s.longest_silence = 2e-3;
   EXPECT_EQ(simulation_doubts(s, experiment()).size(), 3u);
+  s.roof_map = 1.0;
+  s.roof_taken = 4e-9;
+  s.roof_misfit = 2.0;
+  s.roof_odd = 3e-6;
+  s.roof_odd_uncertainty = 1e-8;
+  s.roof_odd_effect = -2e-3;
+  const std::vector<std::string> doubts = simulation_doubts(s, experiment());
+  ASSERT_EQ(doubts.size(), 5u);
+  EXPECT_NE(doubts[2].find("2.0 times"), std::string::npos) << doubts[2];
+  EXPECT_NE(doubts[3].find("3 um"), std::string::npos) << doubts[3];
+  s.roof_odd_effect = -2e-5;  // asymmetric beyond doubt, and nothing to the flow
+  EXPECT_EQ(simulation_doubts(s, experiment()).size(), 4u);
 }
 
 }  // namespace

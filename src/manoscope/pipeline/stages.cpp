@@ -242,10 +242,13 @@ std::vector<FlowRun> make_runs(const Experiment& experiment,
     FlowRun run;
     run.name = name;
     std::vector<Profile> profiles;
+    std::vector<CrossSections> sections;
     std::vector<Pressure> drops, uncertainties, outlets;
     for (const std::size_t i : members.at(name)) {
       run.flow_rate = experiment.flow[i].flow_rate;
       profiles.push_back(reduced[i].profile);
+      sections.push_back(reduced[i].sections);
+      sections.back().x -= reduced[i].condition.shift.shift.si();
       const experiment::FlowMap& map = experiment.flow[i];
       if (map.pressure_drop) drops.push_back(*map.pressure_drop);
       if (map.pressure_drop && map.pressure_drop_uncertainty) {
@@ -254,6 +257,7 @@ std::vector<FlowRun> make_runs(const Experiment& experiment,
       if (map.outlet_pressure) outlets.push_back(*map.outlet_pressure);
     }
     run.profile = mean_profile(profiles);
+    run.sections = mean_sections(sections);
     run.transducer_drop = mean(drops);
     run.outlet_pressure = mean(outlets);
     if (!drops.empty() && uncertainties.size() == drops.size()) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "manoscope/calibration/levels.hpp"
+#include "manoscope/core/cross_sections.hpp"
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/grid.hpp"
 #include "manoscope/core/monitor.hpp"
@@ -49,11 +50,12 @@ std::string inputs_text(const experiment::Experiment& experiment, const ReducedE
 std::vector<calibration::Level> make_levels(const experiment::Experiment& experiment,
                                             const std::vector<maps::ReducedMap>& reduced);
 
-/// One flow run: the mean profile of its maps.
+/// One flow run: the mean of its maps.
 struct FlowRun {
   std::string name;
   FlowRate flow_rate{};
   Profile profile;
+  CrossSections sections;  ///< mean of its maps, x from the inlet edge as that of the profile
   std::optional<Pressure> transducer_drop;         ///< mean over the maps that have one
   std::optional<Pressure> transducer_uncertainty;  ///< standard, of that mean; none if not told
   std::optional<Pressure> outlet_pressure;         ///< mean over the maps that have one

@@ -35,6 +35,17 @@ struct Simulation {
   double smoothing_noise = kNoNumber;            ///< m, rms of the stated noise
   double longest_silence = kNoNumber;            ///< m
 
+  // The roof across, of three dimensions below a map; no number without one.
+  double roof_map = 0.0;              ///< 1: below the run's own maps; 0: one shape, or a plane
+  double roof_taken = kNoNumber;      ///< m, rms a cell, of what smoothing took away
+  double roof_noise = kNoNumber;      ///< m, rms of the stated noise of a cell
+  double roof_misfit = kNoNumber;     ///< rms of what was taken away over the noise, cell by cell
+  double roof_departure = kNoNumber;  ///< m, rms, from the shape between the levels
+  double roof_effect = kNoNumber;     ///< of the channel's drop, what the departure changes
+  double roof_odd = kNoNumber;        ///< m, rms, of what is odd across
+  double roof_odd_uncertainty = kNoNumber;  ///< m, standard
+  double roof_odd_effect = kNoNumber;       ///< of the channel's drop
+
   Array1 x;                                ///< (n) m
   Array1 zeta, zeta_uncertainty;           ///< (n) m, smooth, standard
   Array1 gap;                              ///< (n) m, on the centre line

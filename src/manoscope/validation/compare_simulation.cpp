@@ -90,6 +90,7 @@ class Simulated {
     if (with_inlet) own("inlet profile", solved_.inlet);
     own("outlet pressure", Array1::Constant(solved_.x.size(), outlet_.uncertainty.si()));
     if (with_sides) own("side walls", sides_error_ * sides_);
+    if (solved_.roof_across.size() > 0) own("roof across", solved_.roof_across);
     ErrorTable moved(weights.rows());
     ModelErrors which;
     which.model = false;
@@ -185,7 +186,8 @@ SimulationComparison compare_simulation(const FlowSetup& setup, FlowRate flow_ra
   options.validate();
   const Index n = solved.x.size();
   MANO_ASSERT(n >= 2 && solved.pressure.size() == n && solved.mesh.size() == n &&
-              solved.inlet.size() == n);
+              solved.inlet.size() == n &&
+              (solved.roof_across.size() == 0 || solved.roof_across.size() == n));
   const Simulated simulated(setup, flow_rate, shape, solved, outlet);
   SimulationComparison result;
   if (section) {

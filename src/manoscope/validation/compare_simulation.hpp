@@ -22,12 +22,14 @@ struct SolvedPressure {
   /// known.
   Array1 inlet;
   bool plane = true;  ///< solved between plates: no side walls, and a roof that is flat across
+  /// Pa, what one standard deviation of the roof across does (RoofEffect); empty: nothing.
+  Array1 roof_across = {};
 };
 
 /// Where the uncertainty of a simulated pressure comes from, in this order.
 inline constexpr const char* kSimulationErrors[] = {
-    "numerical", "deflection",    "channel height",  "viscosity",
-    "flow rate", "inlet profile", "outlet pressure", "side walls"};
+    "numerical",     "deflection",      "channel height", "viscosity",  "flow rate",
+    "inlet profile", "outlet pressure", "side walls",     "roof across"};
 
 /// A simulated pressure with its uncertainty, and the reading that it is held against.
 struct SimulationComparison {

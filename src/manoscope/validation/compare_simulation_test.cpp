@@ -80,6 +80,7 @@ TEST(CompareSimulation, NamesEveryPartOfTheUncertainty) {
   SolvedPressure given = solved(shape, kChannel);
   given.mesh = 3.0 * (1.0 - given.x / kChannel.length.si());
   given.inlet = -20.0 * (1.0 - given.x / kChannel.length.si()).square();
+  given.roof_across = 7.0 * (1.0 - given.x / kChannel.length.si());
   const SimulationComparison found =
       compare_simulation(observed(kChannel, kOil, stated), kOilFlow, shape, held.state, given,
                          kOutlet, held.reading, kSection);
@@ -89,6 +90,7 @@ TEST(CompareSimulation, NamesEveryPartOfTheUncertainty) {
   const double drop = given.pressure[0];
   EXPECT_NEAR(std::sqrt(first.at("numerical")), 3.0, 1e-12);
   EXPECT_NEAR(std::sqrt(first.at("inlet profile")), 20.0, 1e-12);
+  EXPECT_NEAR(std::sqrt(first.at("roof across")), 7.0, 1e-12);
   EXPECT_NEAR(std::sqrt(first.at("outlet pressure")), 40.0, 1e-12);
   // Creeping flow goes as eta and Q; what the plane march has of inertia is below 1 % here.
   EXPECT_NEAR(std::sqrt(first.at("viscosity")) / (0.01 * drop), 1.0, 0.02);

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/validation/end_layers.hpp"
 #include "manoscope/validation/error_table.hpp"
 
 namespace manoscope::validation {
@@ -40,23 +40,6 @@ Array1 graded_positions(const flow::Channel& channel) {
   return positions;
 }
 
-/// One knot at each position and one beyond each end: a wall may bend most where it is clamped.
-Array1 knots_at(const Array1& positions) {
-  const Index n = positions.size();
-  Array1 knots(n + 2);
-  knots << 2.0 * positions[0] - positions[1], positions, 2.0 * positions[n - 1] - positions[n - 2];
-  return knots;
-}
-
-/// How much more the wall may bend at its clamped ends than in between, which it does within w/pi.
-std::vector<Array1> end_bends(const Array1& x, double width) {
-  const double reach = width / std::numbers::pi;
-  const Array1 ends = (-x / reach).exp() + ((x - x[x.size() - 1]) / reach).exp();
-  std::vector<Array1> bends;
-  for (const double factor : {0.0, 10.0, 100.0, 1000.0}) bends.emplace_back(1.0 + factor * ends);
-  return bends;
-}
-
 /// The line's values with their noise. A clamped end is known far better than any station.
 numerics::NoisyValues values_of(const WallLine& line, const Profile& state) {
   constexpr double kFinest = 1e-12;  // m: noise of an ideal camera, which is none
@@ -88,8 +71,8 @@ SmoothShape::SmoothShape(const Profile& state, const flow::Channel& channel)
       line_(wall_line(state, channel.length)),
       positions_(graded_positions(channel)),
       // Ripples of two heights stand on two knots in mid-channel, the fewest that tell them.
-      spline_(values_of(line_, state), knots_at(positions_),
-              end_bends(positions_, channel.width.si()), 2.0 * channel.height.si()) {
+      spline_(values_of(line_, state), knots_at(positions_), end_bends(positions_, channel.width),
+              2.0 * channel.height.si()) {
   const Array1 difference = spline_.value(line_.x) - line_.zeta;
   double taken = 0.0, noise = 0.0, count = 0.0;
   for (Index i = 0; i < line_.x.size(); ++i) {
