@@ -68,6 +68,7 @@ struct FlowSolver<dim>::Discrete {
   dealii::DoFHandler<dim> dofs;
   dealii::IndexSet owned, relevant;
   State state;
+  double grad_div = 0.0;  ///< weight of the grad-div term over the Reynolds number
   FlowCosts costs;
 };
 

@@ -75,6 +75,7 @@ class Newton {
 
   void set_grad_div(double weight) {
     assembler_.set_grad_div(weight);
+    discrete_.grad_div = weight;
     discrete_.costs.grad_div = weight != 0.0;
   }
 

@@ -153,6 +153,18 @@ class FlowSolver {
   std::vector<FlowSection> sections(const std::vector<double>& x) const;
   FlowSection section(double x) const { return sections({x}).front(); }
 
+  /// Force of the flow on all cells that are taken out, in eta U L^(dim - 2).
+  ///
+  ///   F_c = -[Re ((u . grad) u_c, v) + (grad u_c, grad v) - (p, dv/dx_c) - (f_c, v)]
+  ///
+  /// with v = 1 at the nodes on their walls and 0 at all others. By parts it is the integral of
+  /// p n - du/dn over the walls, n out of the fluid, and more exact than that integral of discrete
+  /// fields. The transposed half of the viscous stress adds nothing to it: along a wall u = 0, so
+  /// that du_j/dx_i = n_i du_j/dn; then n_j du_j/dn = div u = 0, and n_j du_j/dx_i = 0. Source:
+  /// V. John & G. Matthies, Int. J. Numer. Methods Fluids 37 (2001) 885. Where they touch a side of
+  /// the lattice, the cells at the seam add their part of that side's force.
+  Vector<dim> force_on_solids() const;
+
   FlowPiece<dim> piece() const;
 
   struct Errors {

@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <numbers>
 
 #include "duct_profile.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/flow/duct_resistance.hpp"
 #include "tests/support/quiet_traps.hpp"
-#include "tests/support/reference_table.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace manoscope::navier_stokes {
@@ -25,98 +22,6 @@ std::vector<double> even(double low, double high, int n) {
 class FlowSolverTest : public testing::Test {
   test::QuietTraps traps_;  // MUMPS scales rows by what may be 0 / 0
 };
-
-/// A flow made up: stream function f(x) g(y), with the force that it needs.
-///
-/// u = f g', v = -f' g; f' = f'' = 0 at x = 1 and p = 0 there, so that the open side is met.
-struct MadeUp {
-  double reynolds = 20.0;
-
-  static std::array<double, 4> along(double x) {  // f and its derivatives
-    const double s = 1.0 - x;
-    return {1.0 + s * s * s + 0.5 * s * s * s * s, -3.0 * s * s - 2.0 * s * s * s,
-            6.0 * s + 6.0 * s * s, -6.0 - 12.0 * s};
-  }
-  static std::array<double, 4> up(double y) {  // g and its derivatives
-    const double k = 1.3, a = k * y + 0.2;
-    return {std::sin(a), k * std::cos(a), -k * k * std::sin(a), -k * k * k * std::cos(a)};
-  }
-  static Vector<2> velocity(const Vector<2>& at) {
-    const auto f = along(at[0]), g = up(at[1]);
-    return {f[0] * g[1], -f[1] * g[0]};
-  }
-  static double pressure(const Vector<2>& at) {
-    return std::sin(std::numbers::pi * at[0]) * std::cos(at[1]);
-  }
-  Vector<2> force(const Vector<2>& at) const {
-    const auto f = along(at[0]), g = up(at[1]);
-    const double u = f[0] * g[1], v = -f[1] * g[0];
-    const double u_x = f[1] * g[1], u_y = f[0] * g[2], v_x = -f[2] * g[0], v_y = -f[1] * g[1];
-    const double u_laplace = f[2] * g[1] + f[0] * g[3], v_laplace = -f[3] * g[0] - f[1] * g[2];
-    const double k = std::numbers::pi;
-    return {reynolds * (u * u_x + v * u_y) - u_laplace + k * std::cos(k * at[0]) * std::cos(at[1]),
-            reynolds * (u * v_x + v * v_y) - v_laplace - std::sin(k * at[0]) * std::sin(at[1])};
-  }
-
-  FlowSolver<2>::Errors errors(int order, int n) const {
-    FlowProblem<2> problem;
-    problem.edges = {even(0.0, 1.0, n), even(0.0, 1.0, n)};
-    problem.place = below_roof<2>([](double x, double) { return 1.0 + 0.2 * std::sin(2.5 * x); });
-    problem.reynolds = reynolds;
-    problem.order = order;
-    for (const int side : {SideName::inlet, SideName::floor, SideName::roof}) {
-      problem.sides[side] = {SideCondition::velocity, velocity};
-    }
-    problem.sides[SideName::outlet].condition = SideCondition::open;
-    problem.force = [this](const Vector<2>& at) { return force(at); };
-    FlowSolver<2> solver(problem);
-    solver.solve();
-    return solver.errors(velocity, pressure);
-  }
-};
-
-TEST_F(FlowSolverTest, ConvergesToAMadeUpFlowUnderACurvedRoofInTheOrderOfItsElements) {
-  const MadeUp flow;
-  // The pressure of Q2-Q1 converges faster at first: its order shows on fine meshes.
-  for (const auto& [order, n] : {std::pair{2, 32}, std::pair{3, 8}}) {
-    const auto coarse = flow.errors(order, n), fine = flow.errors(order, 2 * n);
-    EXPECT_NEAR(std::log2(coarse.velocity / fine.velocity), order + 1, 0.1) << order;
-    EXPECT_NEAR(std::log2(coarse.pressure / fine.pressure), order, 0.1) << order;
-  }
-}
-
-/// Cavity with a lid that moves along x between corners that stand still.
-FlowSolver<2> cavity(double reynolds, int order, int n) {
-  std::vector<double> edges;
-  for (int i = 0; i <= n; ++i) edges.push_back(0.5 - 0.5 * std::cos(std::numbers::pi * i / n));
-  FlowProblem<2> problem;
-  problem.edges = {edges, edges};
-  problem.place = below_roof<2>([](double, double) { return 1.0; });
-  problem.reynolds = reynolds;
-  problem.order = order;
-  problem.sides[SideName::roof] = {SideCondition::velocity, [](const Vector<2>&) {
-                                     return Vector<2>{1.0, 0.0};
-                                   }};
-  FlowSolver<2> solver(problem);
-  solver.solve();
-  return solver;
-}
-
-TEST_F(FlowSolverTest, TurnsInACavityAsAnIndependentSolutionDoes) {
-  const auto u_path = shared_file("data/flow/cavity_ours_u_x05.csv");
-  const auto v_path = shared_file("data/flow/cavity_ours_v_y05.csv");
-  if (!std::filesystem::exists(u_path)) GTEST_SKIP() << "no reference flow " << u_path;
-  for (const auto& [reynolds, column] : {std::pair{100.0, 1}, std::pair{400.0, 2}}) {
-    // The corners are resolved to 1/n^2: 40 cells leave 7e-5, 24 cells 1.8e-4.
-    const FlowSolver<2> solver = cavity(reynolds, 3, 40);
-    for (const auto& row : read_table(u_path)) {
-      EXPECT_NEAR(solver.at({0.5, row[0]}).velocity[0], row[column], 1e-4) << reynolds;
-    }
-    for (const auto& row : read_table(v_path)) {
-      EXPECT_NEAR(solver.at({row[0], 0.5}).velocity[1], row[column], 1e-4) << reynolds;
-    }
-  }
-}
 
 TEST_F(FlowSolverTest, CarriesAParabolaWithoutError) {
   FlowProblem<2> problem;

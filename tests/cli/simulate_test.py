@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import os
 import pathlib
 import shutil
 import subprocess
@@ -111,6 +112,34 @@ class Simulate(Folder):
         done = run("simulate", "--shape", self.shape(-300.0), *CHANNEL, check_code=2)
         self.assertIn("gap", done.stderr)
         self.assertEqual(done.stdout, "")
+
+    @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
+    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
+    def test_two_processes_answer_as_one_does(self):
+        # Two may be more than there are cores, and containers run tests as root.
+        environment = os.environ | {
+            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+            "OMPI_MCA_rmaps_base_oversubscribe": "1"}
+        for mesh in (("--cells-along", "20", "--cells-up", "3"),
+                     ("--dim", "3", "--cells-along", "8", "--cells-up", "2", "--cells-across", "3")):
+            flows = []
+            for starter in ((), ("mpirun", "-n", "2")):
+                done = subprocess.run([*starter, SOLVER, self.shape(), *CHANNEL, *mesh,
+                                       "--stations", "5"], text=True, capture_output=True,
+                                      env=environment, timeout=300, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                flows.append(json.loads(done.stdout))
+            one, two = flows
+            self.assertEqual((one["processes"], two["processes"]), (1, 2))
+            self.assertEqual(one["unknowns"], two["unknowns"])
+            for name in ("drop_Pa", "coarse_drop_Pa"):
+                self.assertAlmostEqual(two[name] / one[name], 1, delta=1e-9)
+            for name in ("mean_pressure_Pa", "wall_pressure_Pa"):
+                for alone, shared in zip(one[name], two[name], strict=True):
+                    self.assertAlmostEqual(alone, shared, delta=1e-9 * one["drop_Pa"])
+            for name in ("wall_shear_Pa", "floor_shear_Pa"):
+                for alone, shared in zip(one[name], two[name], strict=True):
+                    self.assertAlmostEqual(alone, shared, delta=1e-9 * max(one[name]))
 
 
     @unittest.skipUnless(SOLVER.exists(), "manoscope-navier-stokes is not built")
