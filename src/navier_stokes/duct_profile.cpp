@@ -16,6 +16,7 @@
 #include <memory>
 
 #include "lattice_mesh.hpp"
+#include "processes.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
@@ -24,7 +25,7 @@ namespace {
 struct Section {
   Section(const std::vector<double>& z_edges, const std::vector<double>& t_edges,
           const std::function<double(double z)>& gap, int order)
-      : mesh(MPI_COMM_SELF,
+      : mesh(Processes::all().alone(),
              {{z_edges, t_edges},
               {},
               [&gap](const std::array<double, 2>& chart) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "duct_profile.hpp"
 #include "manoscope/core/error.hpp"

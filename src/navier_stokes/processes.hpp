@@ -15,6 +15,7 @@ class Processes {
   static const Processes& all();
 
   MPI_Comm comm() const { return MPI_COMM_WORLD; }
+  MPI_Comm alone() const { return MPI_COMM_SELF; }  ///< for what each process solves by itself
   int rank() const { return rank_; }
   int size() const { return size_; }
   bool is_lead() const { return rank_ == 0; }
