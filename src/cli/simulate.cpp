@@ -8,11 +8,13 @@
 #include "commands.hpp"
 #include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/pipeline/simulate_passages.hpp"
 #include "manoscope/pipeline/simulate_runs.hpp"
 #include "manoscope/results/simulation_file.hpp"
 #include "manoscope/results/simulation_table.hpp"
 #include "measured_simulations.hpp"
 #include "navier_stokes/simulation_options.hpp"
+#include "passages_summary.hpp"
 #include "simulate_summary.hpp"
 #include "solver_program.hpp"
 
@@ -25,6 +27,7 @@ struct Args {
   std::string experiment;
   std::vector<std::string> runs;
   fs::path shape, out, csv, vtu;
+  bool parasitic = false;
   navier_stokes::SimulationOptions options;
   pipeline::MeasureOptions measure;
 };
@@ -119,6 +122,34 @@ void simulate_experiment(Args args, const Context& context) {
   }
 }
 
+void simulate_parasitic(const Args& args, const Context& context) {
+  leave_to_experiment(args.options);
+  args.options.validate_solution();
+  if (!args.vtu.empty()) {
+    throw InputError("--vtu", "is for flows in the channel",
+                     "Run manoscope-navier-stokes --passage with --vtu for a flow in a passage");
+  }
+  require_solver();
+  const auto experiment = experiment::read_experiment(fs::path(args.experiment));
+  if (!args.out.empty()) results::check_result_of(args.out, experiment.text);
+  const std::vector<std::string> all{"all"};
+  const auto rates = pipeline::flow_rates_of(experiment, args.runs.empty() ? all : args.runs);
+  const auto solver = [&](const pipeline::GivenPassage& passage) {
+    return solve_passage(passage, args.options.mesh, context.monitor);
+  };
+  const auto drops = pipeline::simulate_passages(experiment, rates, solver, context.monitor);
+  const std::string table = pipeline::passages_table(drops);
+  if (!args.out.empty()) {
+    const fs::path file = results::write_passages(args.out, table);
+    remark(context, fmt::format("drops of the passages in {}", file.string()));
+  }
+  if (!args.csv.empty()) write_file_atomically(args.csv, table);
+  for (const std::string& doubt : pipeline::passage_doubts(experiment, drops)) {
+    remark(context, "note: " + doubt);
+  }
+  print(context.json ? passages_json(drops) : passages_text(drops, context.quiet));
+}
+
 }  // namespace
 
 void add_simulate(Program& program) {
@@ -133,6 +164,10 @@ void add_simulate(Program& program) {
                  "instead of an experiment: table with the columns x and zeta, the width-averaged "
                  "deflection, or x, z and zeta, a map, with their units",
                  false);
+  command.flag("--parasitic", args->parasitic,
+               "of an experiment: the drops of its rigid inlet and outlet passages instead, at the "
+               "flow rates of the runs (all, when --run is absent), and the lines with which "
+               "measure takes them");
   command.option("-o,--output", args->out,
                  "of an experiment: result folder of measure, where the simulation is kept; of a "
                  "shape: CSV file",
@@ -149,7 +184,12 @@ void add_simulate(Program& program) {
                                            : "an experiment and a --shape are given",
                        "Give an experiment and --run, or --shape SHAPE.csv");
     }
-    if (args->shape.empty()) {
+    if (args->parasitic && args->experiment.empty()) {
+      throw InputError("--parasitic", "a shape has no passages", "Give an experiment");
+    }
+    if (args->parasitic) {
+      simulate_parasitic(*args, context);
+    } else if (args->shape.empty()) {
       simulate_experiment(*args, context);
     } else {
       simulate_shape(*args, context);

@@ -12,6 +12,7 @@
 #include "manoscope/core/child_process.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
+#include "navier_stokes/passage_options.hpp"
 #include "simulate_summary.hpp"
 
 namespace manoscope::cli {
@@ -103,20 +104,18 @@ pipeline::SolvedFlow parsed(const std::string& answer) {
   return solved;
 }
 
-}  // namespace
-
-void require_solver() { static_cast<void>(find_solver()); }
-
-std::string ask_solver(const fs::path& shape, const navier_stokes::SimulationOptions& options,
-                       const fs::path& vtu, const Monitor& monitor) {
-  constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
-  constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
-  std::vector<std::string> words{find_solver().string(), shape.string()};
+template <class Options>
+void add_words(const Options& options, std::vector<std::string>& words) {
   for (const OptionInfo& option : list_options(options)) {
     words.push_back("--" + option.name);
     words.push_back(option.value);
   }
-  if (!vtu.empty()) words.insert(words.end(), {"--vtu", vtu.string()});
+}
+
+/// What the program answers to a command line.
+std::string answer_of(const std::vector<std::string>& words, const Monitor& monitor) {
+  constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
+  constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
   ChildProcess::Options started;
   started.wall_seconds = kLongest;
   // One thread: the sparse solver's BLAS would otherwise take all there are, for little.
@@ -139,6 +138,18 @@ std::string ask_solver(const fs::path& shape, const navier_stokes::SimulationOpt
                         kProgram, end.exit_code, end.signal));
 }
 
+}  // namespace
+
+void require_solver() { static_cast<void>(find_solver()); }
+
+std::string ask_solver(const fs::path& shape, const navier_stokes::SimulationOptions& options,
+                       const fs::path& vtu, const Monitor& monitor) {
+  std::vector<std::string> words{find_solver().string(), shape.string()};
+  add_words(options, words);
+  if (!vtu.empty()) words.insert(words.end(), {"--vtu", vtu.string()});
+  return answer_of(words, monitor);
+}
+
 pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
                                 navier_stokes::SimulationOptions options, const fs::path& vtu,
                                 const Monitor& monitor) {
@@ -152,6 +163,34 @@ pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
   options.mesh.dim = flow.dim;
   const ShapeFile shape(flow);
   return parsed(ask_solver(shape.path(), options, vtu, monitor));
+}
+
+pipeline::SolvedPassage solve_passage(const pipeline::GivenPassage& passage,
+                                      const navier_stokes::MeshOptions& options,
+                                      const Monitor& monitor) {
+  navier_stokes::PassageOptions asked;
+  asked.passage = passage.is_inlet ? "inlet" : "outlet";
+  asked.given.channel = passage.channel;
+  asked.given.passage = passage.passage;
+  asked.given.beyond_width = passage.beyond_width;
+  asked.given.beyond_height = passage.beyond_height;
+  asked.given.port = passage.port;
+  asked.port_side = passage.port_at_side ? "side" : "top";
+  asked.given.fluid = passage.fluid;
+  asked.given.flow_rate = passage.flow_rate;
+  asked.mesh = options;
+  asked.mesh.dim = 3;
+  std::vector<std::string> words{find_solver().string()};
+  add_words(asked, words);
+  const json object = json::parse(answer_of(words, monitor));
+  pipeline::SolvedPassage solved;
+  solved.drop = object.at("drop_Pa").get<double>();
+  solved.drop_uncertainty = object.at("drop_numerical_uncertainty_Pa").get<double>();
+  solved.converged = object.at("converged").get<bool>();
+  solved.n_unknowns = object.at("unknowns").get<double>();
+  solved.seconds = object.at("seconds").get<double>();
+  solved.peak_memory = 1e6 * object.at("peak_MB").get<double>();
+  return solved;
 }
 
 }  // namespace manoscope::cli

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "manoscope/core/monitor.hpp"
+#include "manoscope/pipeline/simulate_passages.hpp"
 #include "manoscope/pipeline/simulate_runs.hpp"
 #include "navier_stokes/simulation_options.hpp"
 
@@ -23,6 +24,12 @@ std::string ask_solver(const std::filesystem::path& shape,
 pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
                                 navier_stokes::SimulationOptions options,
                                 const std::filesystem::path& vtu, const Monitor& monitor);
+
+/// The drop of a rigid passage, in three dimensions.
+/// @param options  order, solver and tolerance; the rest is the passage's own.
+pipeline::SolvedPassage solve_passage(const pipeline::GivenPassage& passage,
+                                      const navier_stokes::MeshOptions& options,
+                                      const Monitor& monitor);
 
 /// @throws InputError if the solver is not installed: before an experiment is calibrated in vain.
 void require_solver();

@@ -11,15 +11,33 @@ nlohmann::ordered_json list(const Array1& values) {
   return std::vector<double>(values.data(), values.data() + values.size());
 }
 
-}  // namespace
-
-std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof) {
+/// Of a flow in a channel or in a passage: what its drop is.
+template <class Flow>
+nlohmann::ordered_json drop_of(const Flow& flow) {
   nlohmann::ordered_json object;
   object["dim"] = flow.dim;
   object["drop_Pa"] = flow.drop;
   object["drop_numerical_uncertainty_Pa"] = flow.drop_uncertainty;
   object["coarse_drop_Pa"] = flow.coarse_drop;
   object["converged"] = flow.converged;
+  return object;
+}
+
+void add_costs(const FlowCosts& costs, const Effort& effort, nlohmann::ordered_json& object) {
+  object["unknowns"] = static_cast<std::int64_t>(costs.n_unknowns);
+  object["newton_steps"] = costs.n_newton_steps;
+  object["krylov_steps"] = costs.n_iterations;
+  object["grad_div"] = costs.grad_div;
+  object["largest_linear_residual"] = costs.largest_residual;
+  object["processes"] = effort.n_processes;
+  object["seconds"] = effort.seconds;
+  object["peak_MB"] = effort.peak_megabytes;
+}
+
+}  // namespace
+
+std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof) {
+  nlohmann::ordered_json object = drop_of(flow);
   object["x_m"] = list(flow.x);
   object["gap_m"] = list(flow.gap);
   object["wall_pressure_Pa"] = list(flow.wall_pressure);
@@ -33,14 +51,13 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const Roo
   object["roof_across"] = roof.across;
   object["roof_odd_m"] = roof.odd_part;
   object["roof_misfit"] = flow.roof_misfit;
-  object["unknowns"] = static_cast<std::int64_t>(flow.costs.n_unknowns);
-  object["newton_steps"] = flow.costs.n_newton_steps;
-  object["krylov_steps"] = flow.costs.n_iterations;
-  object["grad_div"] = flow.costs.grad_div;
-  object["largest_linear_residual"] = flow.costs.largest_residual;
-  object["processes"] = effort.n_processes;
-  object["seconds"] = effort.seconds;
-  object["peak_MB"] = effort.peak_megabytes;
+  add_costs(flow.costs, effort, object);
+  return object.dump() + '\n';
+}
+
+std::string passage_json(const PassageFlow& flow, const Effort& effort) {
+  nlohmann::ordered_json object = drop_of(flow);
+  add_costs(flow.costs, effort, object);
   return object.dump() + '\n';
 }
 

@@ -4,6 +4,7 @@
 
 #include "flow_simulation.hpp"
 #include "manoscope/core/error.hpp"
+#include "passage_flow.hpp"
 
 namespace manoscope::navier_stokes {
 
@@ -23,6 +24,8 @@ struct RoofNote {
 /// One object, SI units: "dim", "drop_Pa", "drop_numerical_uncertainty_Pa", "x_m", "gap_m",
 /// "wall_pressure_Pa", "mean_pressure_Pa" and more, as docs/simulation.md lists them.
 std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof = {});
+/// The same of a passage: "dim", the drop with what is known of it, unknowns and effort.
+std::string passage_json(const PassageFlow& flow, const Effort& effort);
 /// {"error": {"where", "found", "mend"}}
 std::string error_json(const InputError& error);
 

@@ -200,6 +200,47 @@ std::vector<FlowSection> FlowSolver<dim>::sections(const std::vector<double>& x)
 }
 
 template <int dim>
+FlowSide FlowSolver<dim>::side(int name) const {
+  const Discrete& discrete = *discrete_;
+  const dealii::QGauss<dim - 1> quadrature(static_cast<unsigned int>(discrete.problem.order) + 2);
+  dealii::FEFaceValues<dim> of_velocity(
+      discrete.mesh.mapping(), discrete.velocity_element, quadrature,
+      dealii::update_values | dealii::update_JxW_values | dealii::update_normal_vectors);
+  dealii::FEFaceValues<dim> of_pressure(discrete.mesh.mapping(), discrete.pressure_element,
+                                        quadrature, dealii::update_values);
+  std::vector<typename Discrete::DofIndex> indices(discrete.element.n_dofs_per_cell());
+  double area = 0.0, force = 0.0, flow = 0.0;
+  for (const auto& cell : discrete.dofs.active_cell_iterators()) {
+    if (!cell->is_locally_owned()) continue;
+    const auto face = static_cast<unsigned int>(name);
+    if (!cell->face(face)->at_boundary() ||
+        static_cast<int>(cell->face(face)->boundary_id()) != name)
+      continue;
+    cell->get_dof_indices(indices);
+    const auto local = discrete.local_state(indices);
+    const typename dealii::Triangulation<dim>::cell_iterator plain_cell(cell);
+    of_velocity.reinit(plain_cell, face);
+    of_pressure.reinit(plain_cell, face);
+    for (const unsigned int q : of_velocity.quadrature_point_indices()) {
+      const double part = of_velocity.JxW(q);
+      area += part;
+      for (unsigned int k = 0; k < of_pressure.dofs_per_cell; ++k) {
+        force += part * local.pressure(k) * of_pressure.shape_value(k, q);
+      }
+      for (unsigned int a = 0; a < of_velocity.dofs_per_cell; ++a) {
+        for (int c = 0; c < dim; ++c) {
+          flow += part * of_velocity.normal_vector(q)[c] * local.velocity(a, c) *
+                  of_velocity.shape_value(a, q);
+        }
+      }
+    }
+  }
+  const auto sums = discrete.processes.sum({area, force, flow});
+  MANO_ASSERT(sums[0] > 0.0);
+  return {sums[1] / sums[0], sums[2]};
+}
+
+template <int dim>
 FlowPiece<dim> FlowSolver<dim>::piece() const {
   const Discrete& discrete = *discrete_;
   const int order = discrete.problem.order;
@@ -287,6 +328,8 @@ template FlowPoint<2> FlowSolver<2>::at(const Vector<2>&) const;
 template FlowPoint<3> FlowSolver<3>::at(const Vector<3>&) const;
 template std::vector<FlowSection> FlowSolver<2>::sections(const std::vector<double>&) const;
 template std::vector<FlowSection> FlowSolver<3>::sections(const std::vector<double>&) const;
+template FlowSide FlowSolver<2>::side(int) const;
+template FlowSide FlowSolver<3>::side(int) const;
 template FlowPiece<2> FlowSolver<2>::piece() const;
 template FlowPiece<3> FlowSolver<3>::piece() const;
 template FlowSolver<2>::Errors FlowSolver<2>::errors(

@@ -114,6 +114,12 @@ struct FlowSection {
   double flow = 0.0;            ///< through the section
 };
 
+/// Values over the fluid's faces on one side of a lattice, free of units.
+struct FlowSide {
+  double mean_pressure = 0.0;  ///< over the area
+  double outflow = 0.0;        ///< out through them; < 0 where the fluid enters
+};
+
 /// Taylor-Hood finite elements for a FlowProblem: Q_k velocities, Q_(k-1) pressure, cells mapped to
 /// their place by polynomials of degree k. All processes that `mpirun` started share the columns of
 /// the lattice; every call is made by all of them and answers the same to all.
@@ -164,6 +170,8 @@ class FlowSolver {
   /// V. John & G. Matthies, Int. J. Numer. Methods Fluids 37 (2001) 885. Where they touch a side of
   /// the lattice, the cells at the seam add their part of that side's force.
   Vector<dim> force_on_solids() const;
+  /// Values over a side of the lattice, by its SideName.
+  FlowSide side(int name) const;
 
   FlowPiece<dim> piece() const;
 

@@ -1,10 +1,13 @@
 // manoscope-navier-stokes SHAPE.csv --height H --width W --flow-rate Q: one flow, as JSON.
 //
+// manoscope-navier-stokes --passage inlet --length L ...: one rigid passage.
+//
 // A program of its own: deal.II and PETSc bring MPI and some 250 libraries, which `manoscope` does
 // not load. `manoscope simulate` starts it, alone or under mpirun.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -19,16 +22,25 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
+#include "passage_options.hpp"
 #include "processes.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
 
+template <class Options>
 struct CommandLine {
   std::string shape;
   SimulationFiles files;
-  SimulationOptions options;
+  Options options;
 };
+
+template <class Options>
+void list(const Options& options) {
+  for (const OptionInfo& option : list_options(options)) {
+    fmt::print("  --{} {}: {} [{}]\n", option.name, option.kind, option.help, option.value);
+  }
+}
 
 void help() {
   fmt::print(
@@ -38,13 +50,17 @@ void help() {
       "x, z, zeta), as JSON.\n"
       "  --vtu FILE         writes velocity and pressure for ParaView\n"
       "  --checkpoint FILE  keeps the state there, and goes on from it\n");
-  for (const OptionInfo& option : list_options(SimulationOptions{})) {
-    fmt::print("  --{} {}: {} [{}]\n", option.name, option.kind, option.help, option.value);
-  }
+  list(SimulationOptions{});
+  fmt::print(
+      "\nusage: manoscope-navier-stokes --passage inlet|outlet --length L --width W --height H\n"
+      "       --channel-width W --channel-height H --flow-rate Q [OPTION VALUE]...\n\n"
+      "The same of a rigid passage before or behind a channel: its drop, as JSON.\n");
+  list(PassageOptions{});
 }
 
-CommandLine read_words(const std::vector<std::string>& words) {
-  CommandLine line;
+template <class Options>
+CommandLine<Options> read_words(const std::vector<std::string>& words) {
+  CommandLine<Options> line;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const std::string& word = words[i];
     if (word.rfind("--", 0) != 0) {
@@ -64,6 +80,11 @@ CommandLine read_words(const std::vector<std::string>& words) {
       set_option(line.options, word.substr(2), value, word);
     }
   }
+  return line;
+}
+
+CommandLine<SimulationOptions> read_channel_words(const std::vector<std::string>& words) {
+  auto line = read_words<SimulationOptions>(words);
   if (line.shape.empty()) {
     throw InputError("command line", "no shape is named",
                      "Name a table with the columns x and zeta, or x, z and zeta; see --help");
@@ -118,24 +139,49 @@ void print_answer(const std::string& text) {
   }
 }
 
-void run(const std::vector<std::string>& words) {
-  const auto start = std::chrono::steady_clock::now();
-  CommandLine line = read_words(words);
-  const GivenWall wall(read_shape_table(line.shape), line.options);
-  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, wall.length());
-  SimulatedFlow flow =
-      simulate(channel_of(wall, line.options), stations, line.options.mesh, line.files);
-  flow.x += wall.start();
+/// Prints the answer, and takes the checkpoints away that led to it.
+template <class Print>
+void answer(std::chrono::steady_clock::time_point start, const SimulationFiles& files,
+            const Print& text) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   const Processes& processes = Processes::all();
   const Effort effort{processes.size(), taken.count(), processes.sum(peak_megabytes())};
   together(processes.comm(), [&] {
     if (!processes.is_lead()) return;
-    print_answer(flow_json(flow, effort, wall.note(line.options)));
-    if (line.files.checkpoint.empty()) return;
-    std::filesystem::remove(line.files.checkpoint);
-    std::filesystem::remove(line.files.checkpoint += ".coarse");
+    print_answer(text(effort));
+    if (files.checkpoint.empty()) return;
+    std::filesystem::remove(files.checkpoint);
+    std::filesystem::remove(std::filesystem::path(files.checkpoint) += ".coarse");
   });
+}
+
+void run_channel(const std::vector<std::string>& words) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto line = read_channel_words(words);
+  const GivenWall wall(read_shape_table(line.shape), line.options);
+  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, wall.length());
+  SimulatedFlow flow =
+      simulate(channel_of(wall, line.options), stations, line.options.mesh, line.files);
+  flow.x += wall.start();
+  answer(start, line.files, [&](const Effort& effort) {
+    return flow_json(flow, effort, wall.note(line.options));
+  });
+}
+
+void run_passage(const std::vector<std::string>& words) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto line = read_words<PassageOptions>(words);
+  if (!line.shape.empty()) {
+    throw InputError(line.shape, "is a shape, and a passage has none", "Leave it out");
+  }
+  const PassageFlow flow =
+      simulate_passage(passage_of(line.options), line.options.mesh, line.files);
+  answer(start, line.files, [&](const Effort& effort) { return passage_json(flow, effort); });
+}
+
+void run(const std::vector<std::string>& words) {
+  const bool passage = std::find(words.begin(), words.end(), "--passage") != words.end();
+  passage ? run_passage(words) : run_channel(words);
 }
 
 }  // namespace

@@ -57,6 +57,7 @@ class SimulateExperiment(DemoFolder):
                 ((self.experiment,), "--run"),
                 ((self.experiment, "--run", "Q5", "--shape", shape), "--shape"),
                 (("--shape", shape, "--run", "Q5"), "--run"),
+                (("--shape", shape, "--parasitic"), "--parasitic"),
                 ((self.experiment, "--run", "Q5", "--height", "175um"), "--height"),
                 ((self.experiment, "--run", "Q5", "--inlet", "slanted"), "--inlet"),
                 ((self.experiment, "--run", "Q5", "--dim", "4"), "--dim"),
@@ -123,6 +124,37 @@ class SimulateExperiment(DemoFolder):
                     / whole["drop_uncertainty_Pa"], 1, places=6)
                 for name in ("numerical", "deflection", "channel height", "inlet profile"):
                     self.assertGreater(parts[name], 0)
+
+    @NEEDS_SOLVER
+    def test_passages_of_the_channels_own_section_cost_what_the_formula_says(self):
+        ducts = self.renamed("ducts")
+        path = ducts / "experiment.toml"
+        text = path.read_text(encoding="utf-8").split("[rigid]")[0]
+        passage = 'length = "2 mm", width = "1.7 mm", height = "175 um"'
+        text += f"[rigid]\ninlet = {{{passage}}}\noutlet = {{{passage}}}\n"
+        path.write_text(text, encoding="utf-8")
+        table = self.folder / "passages.csv"
+        done = run("simulate", ducts, "--parasitic", "--run", "Q5", "--run", "Q20", "--json",
+                   "--csv", table, check_code=0)
+        answer = json.loads(done.stdout)
+        self.assertEqual(len(answer["passages"]), 2)
+        for one in answer["passages"]:
+            bar = one["parasitic_drop_uncertainty_Pa"]
+            self.assertLess(bar, 0.01 * one["formula_drop_Pa"])
+            # The formula of a duct is exact.
+            self.assertLess(abs(one["parasitic_drop_Pa"] - one["formula_drop_Pa"]), bar)
+            self.assertAlmostEqual(one["inlet"]["drop_Pa"] / one["outlet"]["drop_Pa"], 1, places=4)
+        with open(table, encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2)
+        self.assertAlmostEqual(float(rows[1]["parasitic_drop_Pa"]),
+                               answer["passages"][1]["parasitic_drop_Pa"], places=4)
+        # The lines go into the experiment file as they are.
+        path.write_text(text + answer["experiment_file"], encoding="utf-8")
+        self.assertNotIn("rigid", run("check", ducts).stderr)
+        done = run("simulate", ducts, "--parasitic", "--run", "Q5", "-o", self.out / "result",
+                   check_code=2)
+        self.assertIn("another version of the experiment file", done.stderr)
 
     @NEEDS_SOLVER
     def test_one_run_is_an_object_and_its_inlet_can_be_told(self):

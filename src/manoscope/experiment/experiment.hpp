@@ -106,7 +106,9 @@ struct FlowMap {
 struct Passage {
   Length length{}, width{}, height{};
   std::optional<Length> height_uncertainty;  ///< standard, one error for both passages
-  flow::PassageFittings fittings;            ///< steps at its ends and bends in it
+  flow::PassageFittings fittings;  ///< steps at its ends and bends in it; a port is a mitre bend
+  std::optional<Length> port{};    ///< length along the flow of a hole at the gauge's end
+  bool port_at_side = false;       ///< in one side wall, else in the roof
 };
 
 struct RigidSection {

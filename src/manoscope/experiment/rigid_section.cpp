@@ -62,6 +62,37 @@ int read_bends(io::TableReader& passage, const std::string& key, io::Faults& fau
   return usable ? n_bends : 0;
 }
 
+/// @param end  "from" or "into": what lies on the gauge's side of the passage.
+void read_port(io::TableReader& table, const std::string& end, const PassageEnd& step,
+               Passage& passage, io::Faults& faults) {
+  passage.port = table.quantity<Length>("port", io::bounds::kLength);
+  const auto side = table.text("port_side");
+  if (!passage.port) {
+    if (side) {
+      faults.add(table.place("port_side"), "there is no port",
+                 "Give its length along the flow as `port`, or remove the key");
+    }
+    return;
+  }
+  passage.port_at_side = side == "side";
+  if (side && *side != "side" && *side != "top") {
+    faults.add(table.place("port_side"), fmt::format("{} is no side", io::in_quotes(*side)),
+               "Write \"top\" for a hole in the roof, \"side\" for one in a side wall");
+  }
+  if (step.area || step.reservoir) {
+    faults.add(table.place("port"),
+               fmt::format("there is a step at the gauge's end, too (`{}`)", end),
+               "Keep what the flow meets first, and leave out what lies beyond");
+  }
+  if (passage.length > Length{} && *passage.port > passage.length) {
+    faults.add(table.place("port"),
+               fmt::format("the port, {:g} mm, is longer than the passage, {:g} mm",
+                           passage.port->in(mm), passage.length.in(mm)),
+               "The port opens into the passage: count its length to that of the passage");
+  }
+  ++passage.fittings.mitre_bends;
+}
+
 /// @param height  0 if it is at fault itself.
 std::optional<Length> read_height_uncertainty(io::TableReader& passage, Length height,
                                               io::Faults& faults) {
@@ -93,6 +124,8 @@ std::optional<Passage> read_passage(io::TableReader& rigid, const std::string& k
   passage.fittings = {from.area, from.reservoir, into.area, into.reservoir, 0, 0};
   passage.fittings.round_bends = read_bends(*table, "round_bends", faults);
   passage.fittings.mitre_bends = read_bends(*table, "mitre_bends", faults);
+  const bool before = key == "inlet";
+  read_port(*table, before ? "from" : "into", before ? from : into, passage, faults);
   table->finish();
   return passage;
 }

@@ -131,6 +131,14 @@ std::string file_name(const std::string& label) {
   return name;
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!error) return;
+  throw InputError(folder.string(), "cannot be made: " + error.message(),
+                   "Check the permissions of the result folder");
+}
+
 }  // namespace
 
 fs::path simulation_file(const std::string& run, int dim) {
@@ -139,12 +147,7 @@ fs::path simulation_file(const std::string& run, int dim) {
 
 fs::path write_simulation(const fs::path& folder, const Simulation& simulation) {
   fs::path target = folder / simulation_file(simulation.run, static_cast<int>(simulation.dim));
-  std::error_code error;
-  fs::create_directories(target.parent_path(), error);
-  if (error) {
-    throw InputError(target.parent_path().string(), "cannot be made: " + error.message(),
-                     "Check the permissions of the result folder");
-  }
+  make_folder(target.parent_path());
   AtomicFile whole(target);
   {
     auto file = NetcdfFile::create(whole.temporary(), target);
@@ -221,6 +224,19 @@ void check_result_of(const fs::path& folder, const std::string& experiment,
           ? "holds the result of another version of the experiment file"
           : fmt::format("holds the result of other maps, \"{}\"", measurement.title),
       "Give the folder that manoscope measure wrote of this experiment, or measure again");
+}
+
+void check_result_of(const fs::path& folder, const std::string& experiment) {
+  if (read_result(folder).experiment == experiment) return;
+  throw InputError(folder.string(), "holds the result of another version of the experiment file",
+                   "Give the folder that manoscope measure wrote of it, or measure again");
+}
+
+fs::path write_passages(const fs::path& folder, const std::string& table) {
+  fs::path target = folder / kFolder / "passages.csv";
+  make_folder(target.parent_path());
+  write_file_atomically(target, table);
+  return target;
 }
 
 }  // namespace manoscope::results

@@ -42,4 +42,13 @@ StoredSimulations read_simulations(const std::filesystem::path& folder,
 void check_result_of(const std::filesystem::path& folder, const std::string& experiment,
                      const std::string& inputs);
 
+/// The same for what does not depend on the maps.
+void check_result_of(const std::filesystem::path& folder, const std::string& experiment);
+
+/// Keeps a table of the drops of the rigid passages (pipeline::passages_table()) beside a result,
+/// in simulation/passages.csv.
+/// @return the file.
+/// @throws InputError naming what cannot be written.
+std::filesystem::path write_passages(const std::filesystem::path& folder, const std::string& table);
+
 }  // namespace manoscope::results

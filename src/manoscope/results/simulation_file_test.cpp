@@ -179,6 +179,19 @@ TEST(SimulationFile, BelongsToAResultOfTheSameMaps) {
   EXPECT_THROW(check_result_of(folder / "result", measurement.experiment, "a  b\n"), InputError);
 }
 
+TEST(SimulationFile, OfThePassagesStandsBesideAResultOfTheirExperiment) {
+  const TemporaryFolder folder;
+  const Measurement measurement = test_support::example_measurement();
+  EXPECT_THROW(check_result_of(folder / "none", measurement.experiment), InputError);
+  write_result(folder / "result", measurement, {});
+  EXPECT_THROW(check_result_of(folder / "result", "name = \"other\""), InputError);
+  check_result_of(folder / "result", measurement.experiment);
+  const fs::path file = write_passages(folder / "result", "table\n");
+  EXPECT_EQ(file, folder / "result" / "simulation" / "passages.csv");
+  EXPECT_EQ(read_file(file), "table\n");
+  EXPECT_TRUE(read_simulations(folder / "result", measurement).simulations.empty());
+}
+
 TEST(SimulationTable, HasARowAStationAndEmptyCellsForWhatIsNotThere) {
   const Measurement measurement = test_support::example_measurement();
   Simulation plane = example_simulation(measurement, 0, 2);
