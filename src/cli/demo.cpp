@@ -8,11 +8,15 @@
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/flow/one_dimensional.hpp"
 #include "manoscope/pipeline/measure.hpp"
+#include "manoscope/pipeline/simulate_runs.hpp"
 #include "manoscope/report/report.hpp"
+#include "manoscope/results/simulation_file.hpp"
 #include "manoscope/results/write.hpp"
 #include "manoscope/twin/experiment_files.hpp"
 #include "manoscope/twin/scenario_file.hpp"
 #include "manoscope/twin/virtual_experiment.hpp"
+#include "measured_simulations.hpp"
+#include "solver_program.hpp"
 #include "summary.hpp"
 
 namespace manoscope::cli {
@@ -51,6 +55,34 @@ std::string inertia_text(const results::Measurement& m) {
   return {};
 }
 
+/// What Navier-Stokes makes of the wall, or how to have it.
+std::string simulation_part(const std::vector<results::Simulation>& simulations) {
+  if (simulations.empty()) {
+    return "No Navier-Stokes in the measured shape: its solver is not installed (make without\n"
+           "SOLVER=no builds it)\n";
+  }
+  constexpr bool kInShort = true;
+  return "Navier-Stokes in the plane, below the wall as measured\n" +
+         simulations_text(simulations, kInShort);
+}
+
+/// The plane flow of the fastest run below its measured wall.
+results::Simulation simulate_fastest(const experiment::Experiment& experiment,
+                                     const results::Measurement& measured, const Context& context) {
+  Index fastest = 0;
+  measured.flow_rate.maxCoeff(&fastest);
+  const auto ready =
+      pipeline::ready_runs(experiment, {measured.run[static_cast<std::size_t>(fastest)]}, {},
+                           context.threads, context.monitor);
+  const navier_stokes::SimulationOptions options;
+  const auto solver = [&](const pipeline::GivenFlow& flow) {
+    return solve_flow(flow, options, {}, context.monitor);
+  };
+  auto simulation = pipeline::simulate_run(experiment, ready, 0, {}, solver, context.monitor);
+  simulation.cells = solver_settings(options);
+  return simulation;
+}
+
 void demo(const Context& context, const std::filesystem::path& out) {
   const auto folder = out / "experiment";
   constexpr bool kOnlyItsOwn = false;
@@ -61,9 +93,15 @@ void demo(const Context& context, const std::filesystem::path& out) {
       twin::make_virtual_experiment(scenario, context.seed, context.threads, context.monitor);
   constexpr bool kOverwrite = true;  // the folder is the demo's own
   twin::write_experiment(folder, made, kOverwrite, context.monitor);
-  const auto measurement =
-      pipeline::measure(experiment::read_experiment(folder), {}, context.threads, context.monitor);
+  const auto experiment = experiment::read_experiment(folder);
+  auto measurement = pipeline::measure(experiment, {}, context.threads, context.monitor);
+  if (has_solver()) {
+    measurement.simulations.push_back(simulate_fastest(experiment, measurement, context));
+  }
   results::write_result(out, measurement, report::make_report(measurement));
+  for (const results::Simulation& simulation : measurement.simulations) {
+    results::write_simulation(out, simulation);
+  }
   for (const std::string& warning : measurement.warnings) remark(context, "note: " + warning);
   const Verdict verdict = hold_against(measurement, made.truth);
   if (context.json) {
@@ -74,6 +112,7 @@ void demo(const Context& context, const std::filesystem::path& out) {
   print(
       fmt::format("A virtual experiment with known truth: {} maps in {}\n\n"
                   "{}"
+                  "{}\n"
                   "{}\n"
                   "{}\n"
                   "{}\n"

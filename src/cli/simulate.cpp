@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 struct Args {
   std::string experiment;
   std::vector<std::string> runs;
-  fs::path shape, out, csv, vtu;
+  fs::path shape, out, csv;
+  SolverRun solver;
   bool parasitic = false;
   navier_stokes::SimulationOptions options;
   pipeline::MeasureOptions measure;
@@ -43,7 +44,7 @@ void simulate_shape(Args args, const Context& context) {
   }
   args.options.validate();
   if (!args.csv.empty()) args.out = args.csv;
-  const std::string answer = ask_solver(args.shape, args.options, args.vtu, context.monitor);
+  const std::string answer = ask_solver(args.shape, args.options, args.solver, context.monitor);
   if (!args.out.empty()) write_file_atomically(args.out, simulation_table(answer));
   print(context.json ? answer : simulation_text(answer, context.quiet));
   if (const std::string doubt = simulation_doubt(answer); !doubt.empty()) remark(context, doubt);
@@ -71,7 +72,7 @@ pipeline::RoofChoice roof_choice(const navier_stokes::SimulationOptions& options
 }
 
 /// FILE for one run; for several FILE with the label of each before its ending.
-fs::path vtu_file(const fs::path& file, const std::string& run, bool one) {
+fs::path file_of_run(const fs::path& file, const std::string& run, bool one) {
   if (one || file.empty()) return file;
   const fs::path label = results::simulation_file(run, 2).stem();  // safe on every file system
   const std::string name = label.string().substr(0, label.string().size() - 3);
@@ -96,9 +97,15 @@ void simulate_experiment(Args args, const Context& context) {
   const std::size_t n = ready.calibration.runs.size();
   std::vector<results::Simulation> done;
   for (std::size_t i = 0; i < n; ++i) {
-    const fs::path vtu = vtu_file(args.vtu, ready.calibration.runs[i].name, n == 1);
+    const std::string& name = ready.calibration.runs[i].name;
+    SolverRun leading = args.solver;
+    leading.vtu = file_of_run(args.solver.vtu, name, n == 1);
+    leading.checkpoint = file_of_run(args.solver.checkpoint, name, n == 1);
+    SolverRun other = leading;  // of the other inlet
+    other.vtu.clear();
+    if (!other.checkpoint.empty()) other.checkpoint += ".inlet";
     const auto solver = [&](const pipeline::GivenFlow& flow) {
-      return solve_flow(flow, args.options, flow.leading ? vtu : fs::path(), context.monitor);
+      return solve_flow(flow, args.options, flow.leading ? leading : other, context.monitor);
     };
     results::Simulation simulation =
         pipeline::simulate_run(experiment, ready, i, wanted, solver, context.monitor);
@@ -125,7 +132,7 @@ void simulate_experiment(Args args, const Context& context) {
 void simulate_parasitic(const Args& args, const Context& context) {
   leave_to_experiment(args.options);
   args.options.validate_solution();
-  if (!args.vtu.empty()) {
+  if (!args.solver.vtu.empty()) {
     throw InputError("--vtu", "is for flows in the channel",
                      "Run manoscope-navier-stokes --passage with --vtu for a flow in a passage");
   }
@@ -135,7 +142,8 @@ void simulate_parasitic(const Args& args, const Context& context) {
   const std::vector<std::string> all{"all"};
   const auto rates = pipeline::flow_rates_of(experiment, args.runs.empty() ? all : args.runs);
   const auto solver = [&](const pipeline::GivenPassage& passage) {
-    return solve_passage(passage, args.options.mesh, context.monitor);
+    return solve_passage(passage, args.options.mesh, {args.solver.processes, {}, {}},
+                         context.monitor);
   };
   const auto drops = pipeline::simulate_passages(experiment, rates, solver, context.monitor);
   const std::string table = pipeline::passages_table(drops);
@@ -174,7 +182,13 @@ void add_simulate(Program& program) {
                  false);
   command.option("--csv", args->csv, "writes p(x) and wall shear at every station to a CSV file",
                  false);
-  command.option("--vtu", args->vtu, "writes velocity and pressure for ParaView", false);
+  command.option("--vtu", args->solver.vtu, "writes velocity and pressure for ParaView", false);
+  command.option(
+      "--checkpoint", args->solver.checkpoint,
+      "keeps the state of a long solution in a file, and goes on from it; removed at the "
+      "end",
+      false);
+  command.options(args->solver, "Simulation");
   command.options(args->options, "Simulation");
   command.options(args->measure, "Measurement of the shape");
   command.action([args](const Context& context) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "manoscope/flow/laminar.hpp"
 #include "text_table.hpp"
 
 namespace manoscope::cli {
@@ -62,6 +63,14 @@ std::string simulation_text(const std::string& answer, bool in_short) {
 
 std::string simulation_doubt(const std::string& answer) {
   const json object = parsed(answer);
+  if (const double reynolds = object.at("reynolds").get<double>();
+      reynolds > flow::kLargestLaminarReynolds) {
+    return fmt::format(
+        "Re = {:.0f} on the hydraulic diameter, where ducts may turn turbulent: a steady laminar "
+        "flow "
+        "was solved",
+        reynolds);
+  }
   if (object.at("converged").get<bool>()) return "";
   return fmt::format(
       "The drop is uncertain by {:.2g} % for want of cells: take more (--cells-along, --cells-up)",

@@ -23,15 +23,19 @@ using nlohmann::json;
 
 constexpr const char* kProgram = "manoscope-navier-stokes";
 
-/// The solver beside this program, or on PATH.
-fs::path find_solver() {
+/// The solver beside this program, or on PATH; empty if there is none.
+fs::path solver_path() {
   std::error_code error;
   fs::path beside = fs::read_symlink("/proc/self/exe", error).parent_path() / kProgram;
   if (fs::is_regular_file(beside, error) && ::access(beside.c_str(), X_OK) == 0) return beside;
-  if (const auto found = find_program(kProgram)) return *found;
+  return find_program(kProgram).value_or("");
+}
+
+fs::path find_solver() {
+  if (const fs::path found = solver_path(); !found.empty()) return found;
   throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
-                   "Run make simulation, which installs deal.II (tools/install_packages.sh "
-                   "navier-stokes) and builds it beside manoscope");
+                   "Run make, which installs deal.II and builds it beside manoscope unless told "
+                   "SOLVER=no");
 }
 
 /// A file for the solver to read, gone with the object.
@@ -113,6 +117,34 @@ void add_words(const Options& options, std::vector<std::string>& words) {
 }
 
 /// What the program answers to a command line.
+/// The words that start the solver, without its options.
+std::vector<std::string> start_of(const SolverRun& run) {
+  constexpr int kMostProcesses = 100000;
+  if (run.processes < 1 || run.processes > kMostProcesses) {
+    throw InputError("--processes", fmt::format("{} is out of range", run.processes),
+                     fmt::format("Choose from 1 to {}", kMostProcesses));
+  }
+  const std::string solver = find_solver().string();
+  if (run.processes == 1) return {solver};
+  const auto mpirun = find_program("mpirun");
+  if (!mpirun) {
+    throw InputError("--processes", "mpirun is not installed",
+                     "Install openmpi-bin, or leave it at 1");
+  }
+  // More processes than cores are slow, and what the user asks for.
+  std::vector<std::string> words{*mpirun, "-n", std::to_string(run.processes), "--oversubscribe"};
+  if (::geteuid() == 0) words.emplace_back("--allow-run-as-root");
+  words.push_back(solver);
+  return words;
+}
+
+void add_files(const SolverRun& run, std::vector<std::string>& words) {
+  if (!run.vtu.empty()) words.insert(words.end(), {"--vtu", run.vtu.string()});
+  if (!run.checkpoint.empty()) {
+    words.insert(words.end(), {"--checkpoint", run.checkpoint.string()});
+  }
+}
+
 std::string answer_of(const std::vector<std::string>& words, const Monitor& monitor) {
   constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
   constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
@@ -128,8 +160,9 @@ std::string answer_of(const std::vector<std::string>& words, const Monitor& moni
   monitor.checkpoint();
   if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
   if (end.succeeded()) return answer;
+  constexpr int kKilledUnderMpirun = 128 + SIGKILL;
   throw InternalError(
-      end.signal == SIGKILL
+      end.signal == SIGKILL || end.exit_code == kKilledUnderMpirun
           ? fmt::format("{} was killed: the machine may be short of memory; take "
                         "fewer cells",
                         kProgram)
@@ -141,17 +174,19 @@ std::string answer_of(const std::vector<std::string>& words, const Monitor& moni
 }  // namespace
 
 void require_solver() { static_cast<void>(find_solver()); }
+bool has_solver() { return !solver_path().empty(); }
 
 std::string ask_solver(const fs::path& shape, const navier_stokes::SimulationOptions& options,
-                       const fs::path& vtu, const Monitor& monitor) {
-  std::vector<std::string> words{find_solver().string(), shape.string()};
+                       const SolverRun& run, const Monitor& monitor) {
+  std::vector<std::string> words = start_of(run);
+  words.push_back(shape.string());
   add_words(options, words);
-  if (!vtu.empty()) words.insert(words.end(), {"--vtu", vtu.string()});
+  add_files(run, words);
   return answer_of(words, monitor);
 }
 
 pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
-                                navier_stokes::SimulationOptions options, const fs::path& vtu,
+                                navier_stokes::SimulationOptions options, const SolverRun& run,
                                 const Monitor& monitor) {
   options.height = flow.channel.height;
   options.width = flow.channel.width;
@@ -162,12 +197,12 @@ pipeline::SolvedFlow solve_flow(const pipeline::GivenFlow& flow,
   options.wall_shape = flow.z.size() > 0 ? "map" : navier_stokes::wall_shape_text(flow.wall_shape);
   options.mesh.dim = flow.dim;
   const ShapeFile shape(flow);
-  return parsed(ask_solver(shape.path(), options, vtu, monitor));
+  return parsed(ask_solver(shape.path(), options, run, monitor));
 }
 
 pipeline::SolvedPassage solve_passage(const pipeline::GivenPassage& passage,
                                       const navier_stokes::MeshOptions& options,
-                                      const Monitor& monitor) {
+                                      const SolverRun& run, const Monitor& monitor) {
   navier_stokes::PassageOptions asked;
   asked.passage = passage.is_inlet ? "inlet" : "outlet";
   asked.given.channel = passage.channel;
@@ -180,8 +215,9 @@ pipeline::SolvedPassage solve_passage(const pipeline::GivenPassage& passage,
   asked.given.flow_rate = passage.flow_rate;
   asked.mesh = options;
   asked.mesh.dim = 3;
-  std::vector<std::string> words{find_solver().string()};
+  std::vector<std::string> words = start_of(run);
   add_words(asked, words);
+  add_files(run, words);
   const json object = json::parse(answer_of(words, monitor));
   pipeline::SolvedPassage solved;
   solved.drop = object.at("drop_Pa").get<double>();

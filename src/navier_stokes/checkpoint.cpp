@@ -35,33 +35,44 @@ class Fingerprint {
   std::uint64_t sum_ = 0xCBF29CE484222325U;
 };
 
+/// Visits the charts of all corners of the lattice.
+template <int dim, class Visit>
+void for_corners(const Edges<dim>& edges, const Visit& visit) {
+  for (const double x : edges[0]) {
+    for (const double t : edges[1]) {
+      if constexpr (dim == 2) {
+        visit(Vector<2>{x, t});
+      } else {
+        for (const double z : edges[2]) visit(Vector<3>{x, t, z});
+      }
+    }
+  }
+}
+
 /// Of the mesh, its shape and what drives the flow.
 template <int dim>
-std::uint64_t fingerprint(const typename FlowSolver<dim>::Discrete& discrete) {
-  const FlowProblem<dim>& problem = discrete.problem;
+std::uint64_t fingerprint(const FlowProblem<dim>& problem) {
   Fingerprint print;
-  print.add(problem.order);
-  print.add(problem.reynolds);
-  print.add(problem.inlet_flow.value_or(0.0));
-  print.add(problem.slip_before);
-  for (const auto& side : problem.sides) print.add(static_cast<double>(side.condition));
+  for (const double number : {static_cast<double>(problem.order), problem.reynolds,
+                              problem.inlet_flow.value_or(0.0), problem.slip_before}) {
+    print.add(number);
+  }
   for (const auto& edges : problem.edges) {
     print.add(static_cast<double>(edges.size()));
     for (const double edge : edges) print.add(edge);
   }
-  for (const double x : problem.edges[0]) {
-    for (const double t : problem.edges[1]) {
-      Vector<dim> chart{x, t};
-      if constexpr (dim == 3) {
-        for (const double z : problem.edges[2]) {
-          chart[2] = z;
-          for (const double place : problem.place(chart)) print.add(place);
-        }
-      } else {
-        for (const double place : problem.place(chart)) print.add(place);
-      }
+  for (const auto& side : problem.sides) print.add(static_cast<double>(side.condition));
+  for_corners<dim>(problem.edges, [&](const Vector<dim>& chart) {
+    const Vector<dim> place = problem.place(chart);
+    for (const double number : place) print.add(number);
+    for (std::size_t side = 0; side < problem.sides.size(); ++side) {
+      const auto& edges = problem.edges[side / 2];
+      const double end = side % 2 == 0 ? edges.front() : edges.back();
+      if (problem.sides[side].condition != SideCondition::velocity || chart[side / 2] != end)
+        continue;
+      for (const double number : problem.sides[side].velocity(place)) print.add(number);
     }
-  }
+  });
   return print.value();
 }
 
@@ -193,7 +204,7 @@ void write_checkpoint(const fs::path& path, const typename FlowSolver<dim>::Disc
     SharedFile file(processes.comm(), beside, MPI_MODE_CREATE | MPI_MODE_WRONLY);
     if (file.good()) {
       Header header;
-      header.problem = fingerprint<dim>(discrete);
+      header.problem = fingerprint<dim>(discrete.problem);
       header.reached = progress.reached;
       header.grad_div = progress.grad_div ? 1 : 0;
       file.write(0, &header, processes.is_lead() ? sizeof(header) : 0);
@@ -235,7 +246,7 @@ std::optional<Progress> read_checkpoint(const fs::path& path,
   auto parts = fields<dim>(discrete);
   const std::size_t wanted = sizeof(header) + (parts[0].size() + parts[1].size()) * sizeof(double);
   const bool ours = std::memcmp(header.magic, Header().magic, sizeof(header.magic)) == 0;
-  if (ours && header.problem != fingerprint<dim>(discrete)) return std::nullopt;
+  if (ours && header.problem != fingerprint<dim>(discrete.problem)) return std::nullopt;
   if (ours && file.size() == wanted) {
     std::size_t offset = sizeof(header);
     for (NodePlanes<dim>& field : parts) {

@@ -38,6 +38,7 @@ void add_costs(const FlowCosts& costs, const Effort& effort, nlohmann::ordered_j
 
 std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof) {
   nlohmann::ordered_json object = drop_of(flow);
+  object["reynolds"] = flow.reynolds;
   object["x_m"] = list(flow.x);
   object["gap_m"] = list(flow.gap);
   object["wall_pressure_Pa"] = list(flow.wall_pressure);

@@ -13,6 +13,7 @@
 #include "flow_mesh.hpp"
 #include "flow_solver.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/flow/laminar.hpp"
 #include "roof_misfit.hpp"
 #include "vtu_file.hpp"
 
@@ -274,6 +275,7 @@ SimulatedFlow simulate_in(const SimulatedChannel& given, const Array1& stations,
 
   constexpr double kMeshRatio = 1.5, kUncertainty = 1.0 / (kMeshRatio - 1.0);
   result.dim = dim;
+  result.reynolds = flow::duct_reynolds(given.channel, given.fluid, given.flow_rate);
   result.roof_misfit = misfit_of<dim>(given, edges<dim>(given, fine), mesh.order).share;
   result.x = stations;
   result.gap = stations;

@@ -46,6 +46,7 @@ struct SimulatedFlow {
   double coarse_drop = 0.0;       ///< Pa: on the coarser mesh
   double roof_misfit = 0.0;       ///< RoofMisfit::share of the finer mesh
   bool converged = false;         ///< drop_uncertainty is within the tolerance asked for
+  double reynolds = 0.0;          ///< on the hydraulic diameter of the undeflected channel
   FlowCosts costs;                ///< of both meshes; unknowns of the finer
 };
 

@@ -163,9 +163,8 @@ void run_channel(const std::vector<std::string>& words) {
   SimulatedFlow flow =
       simulate(channel_of(wall, line.options), stations, line.options.mesh, line.files);
   flow.x += wall.start();
-  answer(start, line.files, [&](const Effort& effort) {
-    return flow_json(flow, effort, wall.note(line.options));
-  });
+  answer(start, line.files,
+         [&](const Effort& effort) { return flow_json(flow, effort, wall.note(line.options)); });
 }
 
 void run_passage(const std::vector<std::string>& words) {

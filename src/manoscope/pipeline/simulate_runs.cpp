@@ -11,6 +11,7 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/core/suggest.hpp"
+#include "manoscope/flow/laminar.hpp"
 #include "manoscope/pipeline/at_stations.hpp"
 #include "manoscope/pipeline/store_simulation.hpp"
 #include "manoscope/validation/compare_simulation.hpp"
@@ -257,6 +258,15 @@ std::vector<std::string> simulation_doubts(const Simulation& s, const Experiment
         "of the test section, has not converged for want of cells: take more (--cells-along, "
         "--cells-up)",
         s.run, 100.0 * s.channel_drop_numerical_uncertainty / std::abs(s.channel_drop)));
+  }
+  const double reynolds = flow::duct_reynolds(channel_of(experiment), fluid_of(experiment),
+                                              FlowRate::from_si(s.flow_rate));
+  if (reynolds > flow::kLargestLaminarReynolds) {
+    doubts.push_back(
+        fmt::format("{}: Re = {:.0f} on the hydraulic diameter, where ducts may turn turbulent: a "
+                    "steady laminar "
+                    "flow was solved",
+                    s.run, reynolds));
   }
   constexpr double kRough = 1.5;
   if (s.smoothing_taken > kRough * s.smoothing_noise) {

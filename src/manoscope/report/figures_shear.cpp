@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "manoscope/flow/laminar.hpp"
 #include "manoscope/report/figure_data.hpp"
 #include "manoscope/report/figures.hpp"
 #include "manoscope/report/plot_script.hpp"
@@ -12,7 +13,7 @@ namespace {
 
 using results::Measurement;
 
-constexpr double kLaminar = 2000.0;  // largest Reynolds number that the flow models hold for
+constexpr double kLaminar = flow::kLargestLaminarReynolds;
 
 /// One line a run along x, dark to light with the flow rate.
 void draw_runs(PlotScript& script, const Measurement& m, const Array2& values, double unit,

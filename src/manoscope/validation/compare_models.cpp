@@ -7,13 +7,14 @@
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/flow/channel_resistance.hpp"
+#include "manoscope/flow/laminar.hpp"
 #include "manoscope/validation/error_table.hpp"
 
 namespace manoscope::validation {
 namespace {
 
-constexpr double kLaminar = 2000.0;  // Re of a duct below which disturbances die
-constexpr double kFree = 0.05;       // of gap, viscosity and flow rate: far beyond any honest bar
+constexpr double kLaminar = flow::kLargestLaminarReynolds;
+constexpr double kFree = 0.05;  // of gap, viscosity and flow rate: far beyond any honest bar
 
 bool marches_forward_only(flow::FlowModel model) {
   return flow::flow_model_info(model).needs_forward_flow;
