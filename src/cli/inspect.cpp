@@ -8,46 +8,12 @@
 #include "manoscope/core/error.hpp"
 #include "manoscope/io/map_picture.hpp"
 #include "manoscope/io/map_summary.hpp"
+#include "manoscope/io/summary_json.hpp"
 
 namespace manoscope::cli {
 namespace {
 
 using nlohmann::json;
-
-json number(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-json to_json(const io::MapSummary& summary) {
-  json channels = json::array();
-  for (const io::ChannelSummary& channel : summary.channels) {
-    json settings = json::array();
-    for (const auto& [name, value] : channel.settings) {
-      settings.push_back({{"name", name}, {"value", value}});
-    }
-    channels.push_back({{"name", channel.name},
-                        {"page", channel.page},
-                        {"nx", channel.nx},
-                        {"ny", channel.ny},
-                        {"pitch_x_m", number(channel.pitch_x_m)},
-                        {"pitch_y_m", number(channel.pitch_y_m)},
-                        {"size_x_m", number(channel.size_x_m)},
-                        {"size_y_m", number(channel.size_y_m)},
-                        {"unit", channel.unit},
-                        {"file_unit", channel.file_unit},
-                        {"offset_x_pixels", channel.offset_x},
-                        {"offset_y_pixels", channel.offset_y},
-                        {"missing", channel.missing},
-                        {"min", number(channel.min)},
-                        {"max", number(channel.max)},
-                        {"mean", number(channel.mean)},
-                        {"rms", number(channel.rms)},
-                        {"settings", settings},
-                        {"warnings", channel.warnings}});
-  }
-  return {{"file", summary.file.string()},
-          {"format", summary.format},
-          {"orientation", summary.orientation},
-          {"channels", channels}};
-}
 
 std::string length_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g} mm", *value * 1e3) : std::string("unknown");
@@ -118,7 +84,7 @@ void add_inspect(Program& program) {
     for (const auto& file : args->files) {
       const io::MapInspection map = io::inspect_map(file, args->reading);
       if (context.json) {
-        list.push_back(to_json(map.summary));
+        list.push_back(io::summary_json(map.summary));
       } else {
         text += to_text(map.summary, context.quiet);
       }

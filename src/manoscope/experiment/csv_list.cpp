@@ -39,12 +39,13 @@ const ListColumn* meant_column(const std::string& name, std::span<const ListColu
 
 }  // namespace
 
-std::optional<CsvList> CsvList::read(const std::filesystem::path& path,
+std::optional<CsvList> CsvList::read(const std::filesystem::path& path, const std::string* text,
                                      std::span<const ListColumn> columns, io::Faults& faults) {
   CsvList list;
   std::vector<io::CsvRowFault> row_faults;
   try {
-    list.table_ = io::read_csv_table(path, row_faults);
+    list.table_ = text != nullptr ? io::parse_csv_table(*text, path, row_faults)
+                                  : io::read_csv_table(path, row_faults);
   } catch (const InputError& error) {
     // Its `where` is "path" or "path:line"; keep the line for the order of the report.
     io::Place place{path, 0, ""};

@@ -25,7 +25,8 @@ struct ListColumn {
 class CsvList {
  public:
   /// Reads the table; nullopt, with a fault added, if there is none to read.
-  static std::optional<CsvList> read(const std::filesystem::path& path,
+  /// @param text  what the file holds; nullptr: it is read.
+  static std::optional<CsvList> read(const std::filesystem::path& path, const std::string* text,
                                      std::span<const ListColumn> columns, io::Faults& faults);
 
   const io::CsvTable& table() const { return table_; }

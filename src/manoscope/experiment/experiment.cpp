@@ -41,11 +41,15 @@ fs::path find_file(const fs::path& folder_or_file, io::Faults& faults) {
   return file;
 }
 
-io::TomlValue read_document(Experiment& experiment, io::Faults& faults) {
+io::TomlValue read_document(Experiment& experiment, const FileTexts& instead, io::Faults& faults) {
   const fs::path& file = experiment.file;
-  auto text = read_file(file, {file, 0, ""}, faults);
-  faults.throw_if_any(file);
-  experiment.text = std::move(*text);
+  if (const auto given = instead.find(file.lexically_normal()); given != instead.end()) {
+    experiment.text = given->second;
+  } else {
+    auto text = read_file(file, {file, 0, ""}, faults);
+    faults.throw_if_any(file);
+    experiment.text = std::move(*text);
+  }
   try {
     return io::parse_toml(experiment.text, file);
   } catch (const InputError& error) {
@@ -81,8 +85,9 @@ void read_sections(io::TableReader& root, Experiment& experiment, io::Faults& fa
   if (auto table = root.table("rigid")) experiment.rigid = read_rigid(*table, faults);
 }
 
-void read_maps(io::TableReader& root, Experiment& experiment, io::Faults& faults) {
-  MapFiles files(experiment.file.parent_path());
+void read_maps(io::TableReader& root, Experiment& experiment, const FileTexts& instead,
+               io::Faults& faults) {
+  MapFiles files(experiment.file.parent_path(), instead);
   InstrumentSection& instrument = experiment.instrument;
   auto instrument_table = root.table("instrument");
   if (instrument_table) instrument = read_instrument(*instrument_table);
@@ -102,22 +107,38 @@ void read_maps(io::TableReader& root, Experiment& experiment, io::Faults& faults
   experiment.flow = std::move(flow.maps);
 }
 
+void read_whole(Experiment& experiment, const FileTexts& instead, io::Faults& faults) {
+  const io::TomlValue document = read_document(experiment, instead, faults);
+  io::TableReader root(document, "", experiment.file, faults);
+  check_schema(root, faults);
+  experiment.name = root.text("name").value_or("");
+  if (experiment.name.empty()) experiment.name = folder_name(experiment.file);
+  read_sections(root, experiment, faults);
+  read_maps(root, experiment, instead, faults);
+  root.finish();
+  faults.throw_if_any(experiment.file);
+}
+
 }  // namespace
 
 Experiment read_experiment(const fs::path& folder_or_file) {
   io::Faults faults;
   Experiment experiment;
   experiment.file = find_file(folder_or_file, faults);
-  const io::TomlValue document = read_document(experiment, faults);
-  io::TableReader root(document, "", experiment.file, faults);
-  check_schema(root, faults);
-  experiment.name = root.text("name").value_or("");
-  if (experiment.name.empty()) experiment.name = folder_name(experiment.file);
-  read_sections(root, experiment, faults);
-  read_maps(root, experiment, faults);
-  root.finish();
-  faults.throw_if_any(experiment.file);
+  read_whole(experiment, {}, faults);
   return experiment;
+}
+
+ExperimentAttempt attempt_experiment(const fs::path& file, const FileTexts& instead) {
+  ExperimentAttempt attempt;
+  attempt.experiment.file = file;
+  io::Faults faults;
+  try {
+    read_whole(attempt.experiment, instead, faults);
+  } catch (const InputErrors& errors) {
+    attempt.faults = errors.faults();
+  }
+  return attempt;
 }
 
 }  // namespace manoscope::experiment

@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "manoscope/core/error.hpp"
 #include "manoscope/core/frame.hpp"
 #include "manoscope/core/units.hpp"
+#include "manoscope/experiment/file_texts.hpp"
 #include "manoscope/flow/marching.hpp"
 #include "manoscope/flow/passage_losses.hpp"
 #include "manoscope/flow/simulated_drop.hpp"
@@ -138,5 +140,16 @@ struct Experiment {
 /// @throws InputErrors with every fault of the file and its lists, each naming file, line and key,
 ///         what was found and what to write instead.
 Experiment read_experiment(const std::filesystem::path& folder_or_file);
+
+/// What can be understood of an experiment, and every fault of it.
+struct ExperimentAttempt {
+  Experiment experiment;           ///< a value at fault is left at its default
+  std::vector<InputError> faults;  ///< as read_experiment() throws them
+};
+
+/// The same without an exception, for a draft: `instead` holds the texts of experiment.toml and of
+/// lists that are not written yet, by their paths in normal form.
+ExperimentAttempt attempt_experiment(const std::filesystem::path& file,
+                                     const FileTexts& instead = {});
 
 }  // namespace manoscope::experiment

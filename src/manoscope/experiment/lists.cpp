@@ -70,10 +70,11 @@ FlowMap flow_row(Row& row, const std::optional<Pressure>& default_uncertainty) {
 }
 
 template <class T, class ReadRow>
-void read_csv(const std::filesystem::path& path, std::span<const ListColumn> columns,
-              MapList<T>& list, io::Faults& faults, const ReadRow& read_row) {
+void read_csv(const std::filesystem::path& path, const std::string* text,
+              std::span<const ListColumn> columns, MapList<T>& list, io::Faults& faults,
+              const ReadRow& read_row) {
   list.whole = {path, 1, ""};
-  const auto csv = CsvList::read(path, columns, faults);
+  const auto csv = CsvList::read(path, text, columns, faults);
   if (!csv) return;
   for (const io::CsvRow& row : csv->table().rows) {
     CsvRowReader reader(*csv, row, faults);
@@ -130,7 +131,9 @@ MapList<T> read_list(io::TableReader& section, const std::string& name, const ch
   } else if (file) {
     const std::size_t before = faults.size();
     const auto path = files.find(*file, section.place("list"), faults);
-    if (faults.size() == before) read_csv(path, columns, list, faults, read_row);
+    if (faults.size() == before) {
+      read_csv(path, files.text_instead(path), columns, list, faults, read_row);
+    }
   } else if (maps != nullptr) {
     read_inline(section, *maps, name + ".maps", list, faults, read_row);
   }

@@ -41,6 +41,7 @@ fs::path MapFiles::find(const std::string& name, const io::Place& place, io::Fau
     return folder_;
   }
   fs::path named = folder_ / fs::path(name);
+  if (text_instead(named) != nullptr) return named;
   if (const fs::path beside = place.file.parent_path() / fs::path(name);
       !is_there(io::map_address(named).file) && is_there(io::map_address(beside).file)) {
     named = beside;
@@ -60,6 +61,11 @@ fs::path MapFiles::find(const std::string& name, const io::Place& place, io::Fau
   }
   faults.add(place, fmt::format("{}: {}", io::in_quotes(name), trouble), mend);
   return named;
+}
+
+const std::string* MapFiles::text_instead(const fs::path& path) const {
+  const auto found = instead_->find(path.lexically_normal());
+  return found == instead_->end() ? nullptr : &found->second;
 }
 
 std::string MapFiles::suggest(const fs::path& path) {

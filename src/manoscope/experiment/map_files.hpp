@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "manoscope/experiment/file_texts.hpp"
 #include "manoscope/io/faults.hpp"
 
 namespace manoscope::experiment {
@@ -14,7 +15,8 @@ namespace manoscope::experiment {
 /// readers to say.
 class MapFiles {
  public:
-  explicit MapFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit MapFiles(std::filesystem::path folder, const FileTexts& instead)
+      : folder_(std::move(folder)), instead_(&instead) {}
 
   /// The path of a map, relative to the experiment's folder; where nothing is there, relative to
   /// the list that names it. `FILE#n` names the n-th page of a file and stays in the path.
@@ -24,10 +26,14 @@ class MapFiles {
   /// One spelling per file on disk, and per page of it, to tell one that is named twice.
   static std::string identity(const std::filesystem::path& path);
 
+  /// The text that stands in for a file, nullptr if it is read from the disk.
+  const std::string* text_instead(const std::filesystem::path& path) const;
+
  private:
   std::string suggest(const std::filesystem::path& path);
 
   std::filesystem::path folder_;
+  const FileTexts* instead_;
   std::map<std::filesystem::path, std::vector<std::string>> listings_;
   int n_missing_ = 0;
 };

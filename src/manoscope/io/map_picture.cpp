@@ -38,35 +38,47 @@ double percentile(std::vector<double>& sorted, double part) {
 
 }  // namespace
 
-MapPicture picture_of(const CameraGrid& grid, const Array2& values, int longest) {
+Array2 picture_means(const CameraGrid& grid, const Array2& values, int longest) {
   MANO_ASSERT(values.size() > 0 && longest >= kShortest);
   const bool scaled = grid.pitch_x > Length{} && grid.pitch_y > Length{};
   const double wide = static_cast<double>(values.cols()) * (scaled ? grid.pitch_x.si() : 1.0);
   const double high = static_cast<double>(values.rows()) * (scaled ? grid.pitch_y.si() : 1.0);
   const double unit = static_cast<double>(longest) / std::max(wide, high);
-  MapPicture picture;
-  picture.width = std::max(kShortest, static_cast<int>(std::lround(wide * unit)));
-  picture.height = std::max(kShortest, static_cast<int>(std::lround(high * unit)));
+  const auto n_columns_shown = std::max<Index>(kShortest, std::lround(wide * unit));
+  const auto n_rows_shown = std::max<Index>(kShortest, std::lround(high * unit));
 
-  const auto block = [](int i, int n, Index n_pixels) {
+  const auto block = [](Index i, Index n, Index n_pixels) {
     const Index begin = i * n_pixels / n;
     return std::pair{begin, std::max<Index>(1, (i + 1) * n_pixels / n - begin)};
   };
-  std::vector<double> means;
-  for (int iy = 0; iy < picture.height; ++iy) {
-    const auto [row, n_rows] = block(iy, picture.height, values.rows());
-    for (int ix = 0; ix < picture.width; ++ix) {
-      const auto [column, n_columns] = block(ix, picture.width, values.cols());
-      means.push_back(block_mean(values, row, n_rows, column, n_columns));
+  Array2 means(n_rows_shown, n_columns_shown);
+  for (Index iy = 0; iy < n_rows_shown; ++iy) {
+    const auto [row, n_rows] = block(iy, n_rows_shown, values.rows());
+    for (Index ix = 0; ix < n_columns_shown; ++ix) {
+      const auto [column, n_columns] = block(ix, n_columns_shown, values.cols());
+      means(iy, ix) = block_mean(values, row, n_rows, column, n_columns);
     }
   }
+  return means;
+}
+
+std::pair<double, double> colour_ends(const Array2& means) {
   std::vector<double> sorted;
-  std::copy_if(means.begin(), means.end(), std::back_inserter(sorted),
+  std::copy_if(means.data(), means.data() + means.size(), std::back_inserter(sorted),
                [](double mean) { return std::isfinite(mean); });
+  if (sorted.empty()) return {0.0, 0.0};
   std::sort(sorted.begin(), sorted.end());
-  const double low = sorted.empty() ? 0.0 : percentile(sorted, 0.005);
-  const double range = sorted.empty() ? 0.0 : percentile(sorted, 0.995) - low;
-  for (const double mean : means) {
+  return {percentile(sorted, 0.005), percentile(sorted, 0.995)};
+}
+
+MapPicture picture_of(const CameraGrid& grid, const Array2& values, int longest) {
+  const Array2 means = picture_means(grid, values, longest);
+  MapPicture picture;
+  picture.width = static_cast<int>(means.cols());
+  picture.height = static_cast<int>(means.rows());
+  const auto [low, end] = colour_ends(means);
+  const double range = end - low;
+  for (const double mean : means.reshaped<Eigen::RowMajor>()) {
     const bool good = std::isfinite(mean);
     picture.pixels.push_back(good ? viridis(range > 0.0 ? (mean - low) / range : 0.5) : kGrey);
   }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
@@ -16,12 +17,21 @@ struct MapPicture {
   std::vector<Rgb> pixels;  ///< row by row
 };
 
-/// Draws the mean of the good pixels under each picture element in viridis, from the 0.5th to the
-/// 99.5th percentile of these means, so that a spike does not hide the rest. Missing: grey.
+/// The mean of the good pixels under each picture element, the top row first; NaN where there is
+/// none.
 ///
 /// The sides are as the map's lengths (as its pixel counts where it has no scale); the longer one
 /// has `longest` elements, the shorter one at least 8.
+Array2 picture_means(const CameraGrid& grid, const Array2& values, int longest);
+
+/// Draws the mean of the good pixels under each picture element in viridis, from the 0.5th to the
+/// 99.5th percentile of these means, so that a spike does not hide the rest. Missing: grey.
+/// Sides as of picture_means().
 MapPicture picture_of(const CameraGrid& grid, const Array2& values, int longest);
+
+/// From the 0.5th to the 99.5th percentile of the finite means: the ends of the colours. {0, 0}
+/// without any.
+std::pair<double, double> colour_ends(const Array2& means);
 
 /// Writes a picture as PNG.
 /// @throws InputError if the file cannot be written.

@@ -86,6 +86,7 @@ MapInspection inspect_map(const std::filesystem::path& path, const ReadOptions& 
     inspection.summary.channels.push_back(summarise(channel));
   }
   inspection.grid = shown->grid;
+  inspection.unit = shown->unit;
   inspection.shown = std::move(shown->values);
   return inspection;
 }

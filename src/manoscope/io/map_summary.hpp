@@ -42,6 +42,7 @@ struct MapInspection {
   MapSummary summary;
   CameraGrid grid;  ///< of `shown`
   Array2 shown;  ///< the channel that the options name, else the first of heights, else the first
+  std::string unit;  ///< of `shown`
 };
 
 /// As summarise_map(), with the values of one channel.
