@@ -25,6 +25,7 @@ PLACE_TOLERANCE_M = 1e-12  # of where a wall lies, along and across the flow
 GOAL_NUMPY_REDUCTION, GOAL_NUMPY_ONE_PASS = 5.0, 10.0
 GOAL_OVER_READ, GOAL_TWO_THREADS = 1.5, 1.7
 GOAL_SCIPY_READING, GOAL_READING_MS = 10.0, 20.0
+GOAL_ANSWER_MS = 10.0  # 99 of 100 answers of the app, 8 connections at once
 # scipy's curves have other slopes at their knots than ours: of a standard uncertainty, and of it.
 READING_TOLERANCE, READING_UNCERTAINTY_TOLERANCE = 0.5, 0.2
 # What the wall and the twin promise, on one core that does nothing else.
@@ -268,6 +269,14 @@ def time_measure(manoscope, repetitions, experiment, out):
     return table
 
 
+def time_serve(programs, manoscope, experiment):
+    """How long a page of the app waits for an answer."""
+    done = subprocess.run([programs / "bench_serve", manoscope, experiment.parent,
+                           f"{experiment.name}/experiment.toml"],
+                          stdout=subprocess.PIPE, text=True, check=True)
+    return json.loads(done.stdout)
+
+
 def judged(ratio, goal, at_most=False):
     reached = ratio <= goal if at_most else ratio >= goal
     return (f"{ratio:.2f}, goal {'at most' if at_most else 'at least'} {goal:g}: "
@@ -320,6 +329,16 @@ def print_reading(table):
           f"scipy / manoscope: {judged(table['ratio_cpu'], GOAL_SCIPY_READING)}\n"
           f"median difference {table['difference']:.2g} standard uncertainties, of the "
           f"uncertainties {100 * table['uncertainty_difference']:.1f} %")
+
+
+def print_serve(table):
+    print(f"\nAnswers of manoscope serve, {table['connections']} connections at once, "
+          f"{table['requests']} requests each")
+    print(f"{'':<20}{'':<24}{'p50 ms':>9}{'p99 ms':>9}{'most ms':>9}")
+    for answer in table["answers"]:
+        beside = "while maps are drawn" if answer["while_maps_are_drawn"] else ""
+        print(f"{answer['question']:<20}{beside:<24}{answer['p50_ms']:9.2f}{answer['p99_ms']:9.2f}"
+              f"{answer['most_ms']:9.2f}  p99 {judged(answer['p99_ms'], GOAL_ANSWER_MS, True)}")
 
 
 def print_program(title, table):
@@ -380,10 +399,12 @@ def main():
                                Path(name) / "result")
         print_program(f"manoscope measure: {measure['maps']} maps of 1024 x 192 to p(x), figures "
                       f"and report; median of {measure['repetitions']}", measure)
+        serve = time_serve(arguments.programs, arguments.manoscope, experiment)
+        print_serve(serve)
     if arguments.json:
         figures = {"reduction": reduction, "reading": reading, "linear": linear, "twin": twin,
                    "wall_state_s": wall_state_s, "section_march_s": section_march_s,
-                   "limits_kept": kept, "measure": measure}
+                   "limits_kept": kept, "measure": measure, "serve": serve}
         arguments.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf-8")
     if not kept:
         sys.exit("a limit is exceeded: see above")

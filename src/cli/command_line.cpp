@@ -7,7 +7,11 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <new>
+#include <string>
+#include <string_view>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/provenance.hpp"
@@ -44,6 +48,27 @@ void write_remark(const std::string& text) {
   const std::string lines = screen.terminal ? wrapped(text, screen.columns) : text + '\n';
   std::fputs(lines.c_str(), stderr);
 }
+
+/// Progress for a program: a line of JSON a per cent.
+class ProgressLines {
+ public:
+  /// @param stage  its name holds nothing that JSON would escape.
+  void tell(std::string_view stage, double fraction) {
+    const std::scoped_lock guard(mutex_);
+    const int percent = static_cast<int>(fraction * 100.0);
+    if (percent == last_percent_ && stage == last_stage_) return;
+    last_percent_ = percent;
+    last_stage_ = stage;
+    const std::string line = fmt::format(
+        "{{\"progress\": {{\"stage\": \"{}\", \"fraction\": {:.4f}}}}}\n", stage, fraction);
+    std::fwrite(line.data(), 1, line.size(), stderr);
+  }
+
+ private:
+  std::mutex mutex_;
+  int last_percent_ = -1;
+  std::string last_stage_;
+};
 
 void say(const std::string& kind, const std::string& text) {
   write_remark(fmt::format("manoscope: {}: {}", kind, text));
@@ -150,6 +175,9 @@ Command Program::command(const std::string& name, const std::string& help) {
       ->group(kGroup);
   app.add_flag("--quiet", context.quiet, "no progress, no remarks, only the shortest tables")
       ->group(kGroup);
+  app.add_flag("--progress", context.progress,
+               "progress on standard error as lines of JSON, for programs")
+      ->group(kGroup);
   app.add_flag("--json", context.json, "machine-readable output, SI units")->group(kGroup);
   return Command(std::move(impl));
 }
@@ -161,11 +189,15 @@ int Program::run(int argc, char** argv) {
   Impl& impl = *impl_;
   impl.context.monitor.stop_requested = [] { return stop_signal != 0; };
   impl.context.screen = screen_of(STDOUT_FILENO);
-  if (screen_of(STDERR_FILENO).moves) {
-    impl.context.monitor.progress = [&impl](std::string_view stage, double fraction) {
-      if (!impl.context.quiet) progress_bar().show(stage, fraction);
-    };
-  }
+  impl.context.monitor.progress = [&impl, lines = std::make_shared<ProgressLines>(),
+                                   moves = screen_of(STDERR_FILENO).moves](std::string_view stage,
+                                                                           double fraction) {
+    if (impl.context.progress) {
+      lines->tell(stage, fraction);
+    } else if (moves && !impl.context.quiet) {
+      progress_bar().show(stage, fraction);
+    }
+  };
   constexpr int kOurFault = 1, kUsersFault = 2, kInterrupted = 130;
   if (argc < 2) {
     std::fputs(impl.app.help().c_str(), stderr);

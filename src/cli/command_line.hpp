@@ -18,7 +18,8 @@ namespace manoscope::cli {
 struct Context {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0 = all the machine has
+  bool progress = false;  ///< as lines for a program, wherever standard error goes
+  int threads = 0;        ///< 0 = all the machine has
   std::uint64_t seed = 1;
   Monitor monitor;  ///< progress on a terminal, Ctrl-C
   Screen screen;    ///< of standard output

@@ -15,6 +15,7 @@ void add_measure(Program& program);
 void add_plan(Program& program);
 void add_predict(Program& program);
 void add_report(Program& program);
+void add_serve(Program& program);
 void add_simulate(Program& program);
 void add_twin(Program& program);
 

@@ -26,5 +26,6 @@ int main(int argc, char** argv) {
   manoscope::cli::add_twin(program);
   manoscope::cli::add_judge(program);
   manoscope::cli::add_report(program);
+  manoscope::cli::add_serve(program);
   return program.run(argc, argv);
 }

@@ -9,6 +9,7 @@
 
 #include "json_number.hpp"
 #include "manoscope/report/flow_verdict.hpp"
+#include "manoscope/report/summary_json.hpp"
 #include "manoscope/report/wording.hpp"
 #include "manoscope/twin/scenario_file.hpp"
 #include "run_table.hpp"
@@ -134,32 +135,7 @@ std::string details_text(const results::Measurement& m, const Screen& screen) {
 }
 
 std::string summary_json(const results::Measurement& m, const std::filesystem::path& folder) {
-  json runs = json::array();
-  for (Index r = 0; r < m.flow_rate.size(); ++r) {
-    runs.push_back({{"run", m.run[static_cast<std::size_t>(r)]},
-                    {"flow_rate_m3_s", m.flow_rate[r]},
-                    {"reynolds", number(m.reynolds[r])},
-                    {"x_start_m", number(m.test_section(r, 0))},
-                    {"x_end_m", number(m.test_section(r, 1))},
-                    {"extracted_drop_Pa", number(m.extracted_drop[r])},
-                    {"extracted_drop_uncertainty_Pa", number(m.extracted_drop_uncertainty[r])},
-                    {"resistance_drop_Pa", number(m.resistance_drop[r])},
-                    {"resistance_drop_uncertainty_Pa", number(m.resistance_drop_uncertainty[r])},
-                    {"transducer_drop_Pa", number(m.transducer_drop[r])},
-                    {"parasitic_drop_Pa", number(m.parasitic_drop[r])},
-                    {"en_number", number(m.en_number[r])},
-                    {"tube_law_b_N_m", number(m.tube_law_b[r])},
-                    {"tube_law_b_uncertainty_N_m", number(m.tube_law_b_uncertainty[r])}});
-    runs.back().update(flow_checks_json(m, r));
-  }
-  return json{{"output", folder.string()},
-              {"uncertainties", "standard, k = 1"},
-              {"runs", runs},
-              {"checks", checks_json(m)},
-              {"improve_first", advice_json(m)},
-              {"warnings", m.warnings}}
-             .dump(2) +
-         "\n";
+  return report::summary_json(m, folder.string()).dump(2) + "\n";
 }
 
 std::string twin_text(const twin::VirtualExperiment& made, const std::filesystem::path& folder) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "manoscope/results/measurement.hpp"
@@ -11,7 +10,5 @@ namespace manoscope::cli {
 /// What the verdict's flow model finds besides the verdict, as an aligned table: of every run the
 /// flow rate off the wall and the drop that the calibration predicts. "" where there is none.
 std::string flow_findings_text(const results::Measurement& measurement, const Screen& screen);
-/// Of one run as JSON, SI units, standard uncertainties: verdict, models, corrections, ...
-nlohmann::json flow_checks_json(const results::Measurement& measurement, Index run);
 
 }  // namespace manoscope::cli

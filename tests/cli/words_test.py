@@ -18,11 +18,11 @@ class Words(Folder):
     def test_every_command_explains_itself_with_its_common_options(self):
         commands = re.findall(r"^  ([a-z]+) ", run("--help", check_code=0).stdout, re.M)
         for known in ("demo", "init", "check", "inspect", "convert", "formats", "measure", "judge",
-                      "report", "twin"):
+                      "report", "serve", "twin"):
             self.assertIn(known, commands)
         for command in commands:
             text = run(command, "--help", check_code=0).stdout
-            for option in ("--threads", "--seed", "--quiet", "--json"):
+            for option in ("--threads", "--seed", "--quiet", "--json", "--progress"):
                 self.assertIn(option, text, command)
 
     def test_a_slip_in_a_command_is_the_users_and_is_answered_with_the_near_word(self):

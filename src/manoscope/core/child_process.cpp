@@ -67,6 +67,9 @@ class SpawnSettings {
     } else {
       posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
     }
+#if defined(__GLIBC__) && __GLIBC_PREREQ(2, 34)
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+#endif
     posix_spawnattr_init(&attributes_);
     sigset_t none, all;
     sigemptyset(&none);

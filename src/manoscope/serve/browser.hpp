@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace manoscope::serve {
+
+/// Opens an address in the user's browser, if there is a display to show it on.
+/// @return false where there is none, or no way to open it.
+bool open_browser(const std::string& url);
+
+}  // namespace manoscope::serve

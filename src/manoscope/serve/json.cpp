@@ -1,0 +1,79 @@
+#include "manoscope/serve/json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "manoscope/serve/api_error.hpp"
+
+namespace manoscope::serve {
+
+using nlohmann::json;
+
+namespace {
+
+json error_json(const InputError& error) {
+  return {{"where", error.where()}, {"found", error.found()}, {"mend", error.mend()}};
+}
+
+}  // namespace
+
+Reply json_reply(const json& content, unsigned status) {
+  Reply reply;
+  reply.status = status;
+  reply.type = "application/json";
+  reply.body = content.dump(-1, ' ', false, json::error_handler_t::replace);
+  return reply;
+}
+
+Reply error_reply(unsigned status, const InputError& error) {
+  return json_reply({{"error", error_json(error)}}, status);
+}
+
+Reply reply_to_exception() {
+  try {
+    throw;
+  } catch (const ApiError& error) {
+    return error_reply(error.status(), error);
+  } catch (const InputError& error) {
+    return error_reply(422, error);
+  } catch (const InputErrors& errors) {
+    json faults = json::array();
+    for (const InputError& fault : errors.faults()) faults.push_back(error_json(fault));
+    return json_reply({{"error", faults.at(0)}, {"faults", faults}}, 422);
+  } catch (const json::exception& error) {
+    return error_reply(400, {"request", error.what(), "Send what the manual describes"});
+  } catch (const std::bad_alloc&) {
+    return error_reply(500, {"", "out of memory", "Free some"});
+  } catch (const std::exception& error) {
+    return error_reply(500, {"fault of the program", error.what(), "Please report it"});
+  }
+}
+
+json parse_object(const std::string& body) {
+  constexpr int kDeepest = 32;
+  bool too_deep = false;
+  const auto watch = [&](int depth, json::parse_event_t, json&) {
+    too_deep = too_deep || depth > kDeepest;
+    return !too_deep;
+  };
+  const json object = json::parse(body, watch, false);
+  if (!object.is_object() || too_deep) {
+    throw ApiError(400, "request", "the body is no JSON object", "Send what the manual describes");
+  }
+  return object;
+}
+
+std::string text_in(const json& object, const char* key, const std::string& fallback) {
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return fallback;
+  return found->get<std::string>();
+}
+
+bool flag_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->get<bool>();
+}
+
+json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+}  // namespace manoscope::serve
