@@ -11,7 +11,36 @@ import signal
 import subprocess
 import time
 
-from support import DemoFolder, Folder, PROGRAM, main, run
+from support import Folder, PROGRAM, main, run
+
+# A wall that is told by a formula, seen by a small camera: an experiment in a moment.
+SCENARIO = """scenario = 1
+name = "taut"
+[channel]
+length = "8 mm"
+width = "1 mm"
+height = "100 um"
+[wall]
+law = "tapered_membrane"
+thickness = "0.3 um"
+youngs_modulus = "250 GPa"
+poisson_ratio = 0.23
+prestress = "50 MPa"
+[camera]
+n_along = 400
+n_across = 40
+noise = "5 nm"
+shift = "6.4 um"
+blobs = 0.0
+[fluid]
+viscosity = "1 mPa s"
+density = "998 kg/m3"
+[hydrostatic]
+levels = ["0 Pa", "500 Pa", "1 kPa", "2 kPa", "4 kPa", "6 kPa", "8 kPa"]
+[flow]
+flow_rates = ["2 mL/min", "5 mL/min"]
+outlet_pressure = "300 Pa"
+"""
 
 
 class Served:
@@ -101,8 +130,12 @@ class Words(Folder):
         self.assertEqual(process.returncode, 0)
 
 
-class Measuring(DemoFolder):
-    """On the experiment of the demo."""
+class Measuring(Folder):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "taut.toml").write_text(SCENARIO)
+        self.out = self.folder / "served"
+        run("twin", self.folder / "taut.toml", "-o", self.out / "experiment", check_code=0)
 
     def serve(self):
         served = Served(self.out)
@@ -114,7 +147,7 @@ class Measuring(DemoFolder):
         _, state = served.ask("GET", "/api/state")
         self.assertEqual([e["file"] for e in state["experiments"]], ["experiment/experiment.toml"])
         order = {"experiment": "experiment/experiment.toml", "output": "again",
-                 "options": {"interactive": "no"}}
+                 "options": {"nonlocal": "no", "interactive": "no"}}
         answer, _ = served.ask("POST", "/api/jobs", order)
         self.assertEqual(answer.status, 202)
         self.assertEqual(served.ask("POST", "/api/jobs", order)[0].status, 409)
@@ -122,7 +155,8 @@ class Measuring(DemoFolder):
         self.assertEqual((job["state"], job["fraction"]), ("done", 1.0), job["log"])
         self.assertTrue(job["stage"])
         out = self.folder / "by-hand"
-        done = run("measure", self.out / "experiment", "-o", out, "--json", check_code=0)
+        done = run("measure", self.out / "experiment", "-o", out, "--nonlocal", "no", "--json",
+                   check_code=0)
         result = served.ask("GET", "/api/result?folder=again")[1]
         told = json.loads(done.stdout)
         for key in ("checks", "improve_first", "uncertainties", "warnings"):
