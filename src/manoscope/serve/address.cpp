@@ -106,8 +106,15 @@ std::optional<std::vector<std::string>> relative_parts(std::string_view path) {
 
 std::string join(const std::vector<std::string>& parts) {
   std::string path;
-  for (const std::string& part : parts) path += (path.empty() ? "" : "/") + part;
+  for (const std::string& part : parts) path = under(path, part);
   return path;
+}
+
+std::string under(const std::string& folder, const std::string& name) {
+  if (folder.empty()) return name;
+  std::string path = folder;
+  path += '/';
+  return path += name;
 }
 
 bool is_utf8(std::string_view text) {

@@ -34,6 +34,9 @@ bool is_plain_name(std::string_view part);
 /// "a/b.gsf"
 std::string join(const std::vector<std::string>& parts);
 
+/// The path of a name in a folder, "" being the one that is served.
+std::string under(const std::string& folder, const std::string& name);
+
 bool is_utf8(std::string_view text);
 
 }  // namespace manoscope::serve

@@ -154,7 +154,7 @@ Reply ExperimentApi::draft(const Request& request) {
   for (std::filesystem::directory_iterator it(path, error), end; !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename().string();
-    if (folder_->leads_out(relative.empty() ? name : relative + "/" + name)) {
+    if (folder_->leads_out(under(relative, name))) {
       throw InputError(name, "the link leads out of the folder that is served",
                        "Copy the file into the folder");
     }
@@ -165,7 +165,7 @@ Reply ExperimentApi::draft(const Request& request) {
   for (const auto& file : draft.written) {
     written.push_back(file.lexically_relative(folder_->path()).string());
   }
-  return json_reply({{"file", relative.empty() ? "experiment.toml" : relative + "/experiment.toml"},
+  return json_reply({{"file", under(relative, "experiment.toml")},
                      {"written", written},
                      {"hydrostatic", draft.hydrostatic},
                      {"flow", draft.flow},

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 
 #include "manoscope/core/atomic_file.hpp"
@@ -26,16 +27,15 @@ std::optional<std::string> read_text(const Folder& folder, const std::string& re
   if (status_of(opened).size > kLargestText) {
     throw InputError(relative, "the file is too large", "No text of settings is that large");
   }
-  std::string text(kLargestText, '\0');
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t n = ::read(opened.number(), text.data() + size, text.size() - size);
+  std::string text;
+  std::array<char, 16384> buffer{};
+  while (text.size() <= kLargestText) {
+    const ssize_t n = ::read(opened.number(), buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) throw InputError(relative, "the file cannot be read", "Check the disk");
     if (n == 0) break;
-    size += static_cast<std::size_t>(n);
+    text.append(buffer.data(), static_cast<std::size_t>(n));
   }
-  text.resize(size);
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/serve/address.hpp"
 
 namespace manoscope::serve {
 namespace {
@@ -66,7 +67,7 @@ Descriptor Folder::make_folders(const std::vector<std::string>& parts) const {
   Descriptor folder(open_beneath(descriptor_.number(), "", O_RDONLY | O_DIRECTORY));
   std::string path;
   for (const std::string& part : parts) {
-    path += (path.empty() ? "" : "/") + part;
+    path = under(path, part);
     ::mkdirat(folder.number(), part.c_str(), 0777);  // there already: it is opened all the same
     folder = Descriptor(open_beneath(descriptor_.number(), path, O_RDONLY | O_DIRECTORY));
     if (!folder) {

@@ -50,7 +50,7 @@ void check_names(const json& form) {
     if (std::none_of(keys.begin(), keys.end(), in_section)) refuse(section);
     if (!value.is_object()) continue;
     for (const auto& [name, ignored] : value.items()) {
-      const std::string whole = section + "." + name;
+      const std::string whole = fmt::format("{}.{}", section, name);
       if (std::none_of(keys.begin(), keys.end(),
                        [&](const FormKey& key) { return key.name() == whole; })) {
         refuse(whole);

@@ -1,5 +1,7 @@
 #include "manoscope/serve/job_api.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -18,7 +20,7 @@ using nlohmann::json;
 /// "s1/experiment.toml" gives "s1-result", one at the top "result".
 std::string usual_output(const std::string& experiment) {
   const auto slash = experiment.rfind('/');
-  return slash == std::string::npos ? "result" : experiment.substr(0, slash) + "-result";
+  return slash == std::string::npos ? "result" : experiment.substr(0, slash).append("-result");
 }
 
 bool is_report_option(const std::string& name) {
@@ -61,7 +63,7 @@ JobOrder order_from(const Folder& folder, const std::string& program, const std:
     } else {
       set_option(measure, name, text, name);
     }
-    order.words.push_back("--" + name + "=" + text);
+    order.words.push_back(fmt::format("--{}={}", name, text));
   }
   measure.validate();
   return order;

@@ -56,7 +56,7 @@ json parse_object(const std::string& body) {
     too_deep = too_deep || depth > kDeepest;
     return !too_deep;
   };
-  const json object = json::parse(body, watch, false);
+  json object = json::parse(body, watch, false);
   if (!object.is_object() || too_deep) {
     throw ApiError(400, "request", "the body is no JSON object", "Send what the manual describes");
   }

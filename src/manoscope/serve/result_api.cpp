@@ -67,7 +67,7 @@ Reply result_file_reply(const Folder& folder, const Address& address) {
 
 Reply result_reply(const Folder& folder, const Address& address) {
   const std::string name = address.value("folder").value_or("");
-  const std::string file = name.empty() ? "result.nc" : name + "/result.nc";
+  const std::string file = under(name, "result.nc");
   if (!relative_parts(name) || !folder.has(file, Folder::Kind::file)) {
     throw ApiError(404, name, "the folder holds no result", "Name a folder with a result.nc");
   }

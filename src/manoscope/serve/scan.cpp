@@ -55,7 +55,7 @@ void each_entry(const Folder& folder, const std::string& relative, const Take& t
     const bool linked = S_ISLNK(status.st_mode) != 0;
     std::optional<Entry> entry;
     if (linked) {
-      entry = follow(folder, relative.empty() ? name : relative + "/" + name, name);
+      entry = follow(folder, under(relative, name), name);
     } else if (S_ISDIR(status.st_mode) || S_ISREG(status.st_mode)) {
       entry = entry_of(name, status);
     }
@@ -66,7 +66,7 @@ void each_entry(const Folder& folder, const std::string& relative, const Take& t
 void scan_folder(const Folder& folder, const std::string& relative, int depth, Scan& found) {
   std::vector<std::string> folders;
   each_entry(folder, relative, [&](Entry entry, bool linked) {
-    const std::string path = relative.empty() ? entry.name : relative + "/" + entry.name;
+    const std::string path = under(relative, entry.name);
     if (entry.is_folder) {
       if (!linked) folders.push_back(path);
     } else if (found.files.size() < kMostFiles) {

@@ -62,11 +62,9 @@ Reply StateApi::state(const json& job) {
                              {"modified", file.modified}});
     } else if (is_named(path, "result.nc")) {
       const std::string folder = parent_of(path);
-      results.push_back(
-          {{"folder", folder},
-           {"modified", file.modified},
-           {"report",
-            found.files.contains(folder.empty() ? "report.html" : folder + "/report.html")}});
+      results.push_back({{"folder", folder},
+                         {"modified", file.modified},
+                         {"report", found.files.contains(under(folder, "report.html"))}});
     }
   }
   return json_reply(
@@ -88,9 +86,9 @@ Reply StateApi::list(const Address& address) const {
   const std::vector<Entry> entries = list_folder(*folder_, folder, kMostEntries);
   json list = json::array();
   for (const Entry& entry : entries) {
-    const std::string path = folder.empty() ? entry.name : folder + "/" + entry.name;
+    const std::string path = under(folder, entry.name);
     const auto holds = [&](const char* name) {
-      return entry.is_folder && folder_->has(path + "/" + name, Folder::Kind::file);
+      return entry.is_folder && folder_->has(under(path, name), Folder::Kind::file);
     };
     list.push_back({{"name", entry.name},
                     {"kind", entry.is_folder ? "folder" : "file"},
