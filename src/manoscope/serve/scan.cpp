@@ -65,7 +65,7 @@ void each_entry(const Folder& folder, const std::string& relative, const Take& t
 
 void scan_folder(const Folder& folder, const std::string& relative, int depth, Scan& found) {
   std::vector<std::string> folders;
-  each_entry(folder, relative, [&](Entry entry, bool linked) {
+  each_entry(folder, relative, [&](const Entry& entry, bool linked) {
     const std::string path = under(relative, entry.name);
     if (entry.is_folder) {
       if (!linked) folders.push_back(path);
