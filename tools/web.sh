@@ -27,9 +27,9 @@ fetch_packages() {
 # The bundle again, in a folder of its own, against the one that was committed.
 check_bundle() {
   local fresh=$1
-  MANOSCOPE_WEB_DIST=$fresh npm --prefix web run --silent build -- --logLevel warn
+  MANOSCOPE_WEB_DIST=$fresh npm --prefix web run --silent build
   local file
-  for file in report.js report.css; do
+  for file in report.js report.css app.js app.css; do
     cmp -s "$fresh/$file" "web/dist/$file" ||
       fail "web/dist/$file is not what web/ builds: run make web, and commit web/dist"
   done
@@ -49,7 +49,7 @@ cd "$here"
 case ${1:-} in
   build)
     fetch_packages
-    npm --prefix web run --silent build -- --logLevel warn
+    npm --prefix web run --silent build
     ;;
   check)
     program=${2:?"web: check wants the program, build/manoscope"}

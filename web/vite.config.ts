@@ -2,7 +2,8 @@ import { readFileSync } from 'node:fs';
 import { svelte } from '@sveltejs/vite-plugin-svelte';
 import { type Plugin, defineConfig } from 'vite';
 
-// One script and one style, for the C++ report writer to put into report.html.
+// Two bundles of one script and one style each: report, which the C++ report writer puts into
+// report.html, and app (mode "app"), the page of `manoscope serve`.
 /** The licences of what the bundle holds besides our own; both ask for it, in the same words. */
 function notice(): string {
   const texts = ['svelte/LICENSE.md', 'uplot/LICENSE'].map((file) =>
@@ -24,23 +25,26 @@ const fitForPages: Plugin = {
   },
 };
 
-export default defineConfig({
-  plugins: [svelte({ emitCss: true }), fitForPages],
-  build: {
-    target: 'es2022',
-    outDir: process.env.MANOSCOPE_WEB_DIST ?? 'dist',
-    emptyOutDir: true,
-    minify: 'esbuild',
-    sourcemap: false,
-    modulePreload: false,
-    cssCodeSplit: false,
-    lib: {
-      entry: 'src/main.ts',
-      formats: ['iife'],
-      name: 'manoscope',
-      fileName: () => 'report.js',
-      cssFileName: 'report',
+export default defineConfig(({ mode }) => {
+  const name = mode === 'app' ? 'app' : 'report';
+  return {
+    plugins: [svelte({ emitCss: true }), fitForPages],
+    build: {
+      target: 'es2022',
+      outDir: process.env.MANOSCOPE_WEB_DIST ?? 'dist',
+      emptyOutDir: name === 'report',
+      minify: 'esbuild',
+      sourcemap: false,
+      modulePreload: false,
+      cssCodeSplit: false,
+      lib: {
+        entry: name === 'app' ? 'src/app/main.ts' : 'src/main.ts',
+        formats: ['iife'],
+        name: 'manoscope',
+        fileName: () => `${name}.js`,
+        cssFileName: name,
+      },
     },
-  },
-  esbuild: { charset: 'ascii', legalComments: 'none' },
+    esbuild: { charset: 'ascii', legalComments: 'none' },
+  };
 });

@@ -1,4 +1,5 @@
 import 'uplot/dist/uPlot.min.css';
+import './chart/chart.css';
 import './style.css';
 import { mount } from 'svelte';
 import Explore from './Explore.svelte';

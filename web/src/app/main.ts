@@ -1,0 +1,12 @@
+import 'uplot/dist/uPlot.min.css';
+import '../chart/chart.css';
+import './app.css';
+import { mount } from 'svelte';
+import App from './App.svelte';
+import { session } from './model/session.svelte';
+
+const target = document.getElementById('app');
+if (target) {
+  mount(App, { target });
+  void session.start();
+}

@@ -1,0 +1,111 @@
+// The served folder, the job that runs in it, and what of it the page shows.
+
+import { Refused, api, listen } from '../api/client';
+import type { Entry, Event, FolderState, Job } from '../api/types';
+import { Draft } from './draft.svelte';
+import { STEPS, type Step } from './fields';
+
+const MOST_LINES = 400; // of a job's log, as the server keeps
+
+class Session {
+  state = $state.raw<FolderState | null>(null);
+  draft = $state.raw<Draft | null>(null);
+  entries = $state.raw<Entry[]>([]); // of the folder of the experiment
+  job = $state<Job | null>(null);
+  online = $state(true);
+  step = $state<Step>('maps');
+  trouble = $state('');
+  started = $state(false);
+
+  /** Folder of the experiment, else the served one. */
+  get folder(): string {
+    return this.draft?.folder ?? '';
+  }
+  get maps(): string[] {
+    return this.entries.filter(({ map }) => map).map(({ name }) => name);
+  }
+  get running(): boolean {
+    return this.job?.state === 'running';
+  }
+
+  async start(): Promise<void> {
+    window.addEventListener('hashchange', () => void this.follow());
+    await this.attempt(async () => {
+      await this.refresh();
+      await this.follow();
+      listen((event) => this.hear(event), (there) => (this.online = there));
+    });
+    this.started = true;
+  }
+
+  /** Does something that the server may refuse, and says so. */
+  async attempt(act: () => Promise<void>): Promise<boolean> {
+    this.trouble = '';
+    try {
+      await act();
+      return true;
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      this.trouble = error.words;
+      return false;
+    }
+  }
+
+  async refresh(): Promise<void> {
+    this.state = await api.state();
+    await this.readFolder();
+  }
+
+  private async readFolder(): Promise<void> {
+    this.entries = (await api.files(this.folder)).entries;
+  }
+
+  /** Where an address such as "#/channel/s1/experiment.toml" leads. */
+  private async follow(): Promise<void> {
+    const [, step, file] = /^#\/([a-z]+)(?:\/(.*))?$/.exec(location.hash) ?? [];
+    const known = STEPS.find(({ name }) => name === step)?.name ?? 'maps';
+    const list = this.state?.experiments ?? [];
+    const wanted = file === undefined ? (list.length === 1 ? list[0].file : null) : decodeURIComponent(file);
+    if (wanted !== (this.draft?.file ?? null)) await this.attempt(() => this.read(wanted));
+    this.go(known);
+  }
+
+  private async read(file: string | null): Promise<void> {
+    await this.draft?.save();
+    this.draft = file === null ? null : new Draft(await api.experiment(file), this.state?.folder.path ?? '');
+    await this.readFolder();
+  }
+
+  go(step: Step): void {
+    this.step = step;
+    const file = this.draft ? `/${encodeURI(this.draft.file)}` : '';
+    const address = `#/${step}${file}`;
+    if (location.hash !== address) history.replaceState(null, '', address);
+  }
+
+  async open(file: string | null): Promise<void> {
+    await this.attempt(() => this.read(file));
+    this.go('maps');
+  }
+
+  private hear(event: Event): void {
+    if (event.type === 'hello') this.job = event.job;
+    else if (event.type === 'start' || event.type === 'end') this.job = event.job;
+    else if (event.type === 'files') void this.attempt(() => this.heed(event.changed));
+    if (event.type === 'end') void this.attempt(() => this.refresh());
+    if (this.job === null) return;
+    if (event.type === 'progress' && event.job === this.job.id) {
+      this.job.stage = event.stage;
+      this.job.fraction = event.fraction;
+    }
+    if (event.type === 'log' && event.job === this.job.id) this.job.log = [...this.job.log, event.line].slice(-MOST_LINES);
+  }
+
+  private async heed(changed: string[]): Promise<void> {
+    const within = this.folder === '' ? '' : `${this.folder}/`;
+    await this.refresh();
+    if (this.draft && changed.some((file) => file.startsWith(within))) await this.draft.look();
+  }
+}
+
+export const session = new Session();
