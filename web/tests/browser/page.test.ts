@@ -2,20 +2,11 @@
 
 import { readFileSync, statSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { createRequire } from 'node:module';
 import type { AddressInfo } from 'node:net';
 import type { Browser } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
-import { REPORT, REPORT_WITHOUT_MAPS, launch, open } from './support';
+import { REPORT, REPORT_WITHOUT_MAPS, graveFindings, launch, open } from './support';
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-interface Axe {
-  axe: {
-    run(context: { exclude?: string[][]; include?: string[][] }): Promise<{
-      violations: { id: string; impact: string; nodes: { html: string }[] }[];
-    }>;
-  };
-}
 let browser: Browser;
 beforeAll(async () => {
   browser = await launch();
@@ -147,17 +138,12 @@ describe('everyone', () => {
           await section.scrollIntoViewIfNeeded();
           await page.waitForTimeout(100);
         }
-        await page.evaluate(axe);
         // All of it in the light and wide; in the dark and narrow without the insides of the figures,
         // which are long and the same; else what the script makes.
         const light = colorScheme === 'light';
         const wide = width === 1440;
         const part = light === wide ? { exclude: light ? [] : [['figure svg']] } : { include: [['#explore']] };
-        const found = await page.evaluate((context) => (window as unknown as Axe).axe.run(context), part);
-        const grave = found.violations
-          .filter(({ impact }) => impact === 'serious' || impact === 'critical')
-          .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html.slice(0, 160)).join(' | ')}`);
-        expect(grave).toEqual([]);
+        expect(await graveFindings(page, part)).toEqual([]);
         const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
         expect(beyond).toBeLessThanOrEqual(0); // nothing sticks out sideways
         await page.context().close();

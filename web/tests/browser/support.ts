@@ -1,7 +1,8 @@
 // Opens report.html in the machine's own Chromium. MANOSCOPE_REPORT names the page, CHROMIUM the
 // browser (else it is looked for on the PATH); MANOSCOPE_REPORT_WITHOUT_MAPS a page without maps.
 
-import { accessSync, constants } from 'node:fs';
+import { accessSync, constants, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { delimiter, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { type Browser, type BrowserContextOptions, type Page, chromium } from 'playwright-core';
@@ -20,9 +21,9 @@ function onPath(names: string[]): string {
   throw new Error('no chromium on the PATH: install it, or name it in the variable CHROMIUM');
 }
 
-function named(variable: string): string {
+export function named(variable: string): string {
   const path = process.env[variable];
-  if (!path) throw new Error(`the variable ${variable} names no report.html: run \`make web-check\``);
+  if (!path) throw new Error(`the variable ${variable} is not set: run \`make web-check\``);
   return resolve(path);
 }
 
@@ -75,4 +76,24 @@ export async function saved(page: Page, click: () => Promise<void>): Promise<{ n
   const chunks: Buffer[] = [];
   for await (const chunk of await download.createReadStream()) chunks.push(chunk as Buffer);
   return { name: download.suggestedFilename(), bytes: Buffer.concat(chunks) };
+}
+
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+interface Axe {
+  axe: {
+    run(context: AxeContext): Promise<{ violations: { id: string; impact: string; nodes: { html: string }[] }[] }>;
+  };
+}
+export interface AxeContext {
+  include?: string[][];
+  exclude?: string[][];
+}
+
+/** What axe-core finds serious or critical, one line a rule. The page's policy must be bypassed. */
+export async function graveFindings(page: Page, context: AxeContext): Promise<string[]> {
+  await page.evaluate(axe);
+  const found = await page.evaluate((part) => (window as unknown as Axe).axe.run(part), context);
+  return found.violations
+    .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+    .map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map((node) => node.html.slice(0, 160)).join(' | ')}`);
 }

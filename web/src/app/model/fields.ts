@@ -25,6 +25,8 @@ export interface FieldKind {
 const field = (path: string, label: string, example: string, hint = ''): FieldKind => ({ path, label, example, hint });
 const choice = (path: string, label: string, choices: [string, string][], hint = ''): FieldKind => ({ path, label, choices, hint });
 
+export const NAME = field('name', 'Name of the experiment', 'S1');
+
 export const SIZES = [
   field('channel.length', 'Length', '15.5 mm', 'along the flow'),
   field('channel.width', 'Width', '1.7 mm', 'across the flow'),
@@ -94,7 +96,7 @@ export const ORIGIN = field('channel.origin', 'Inlet-side corner', '0.4 mm', 'fr
 export const PITCH = field('instrument.pixel_pitch', 'Distance of pixels', '1.5 um', 'where the files have no scale');
 
 const OF_STEP: [Step, FieldKind[]][] = [
-  ['maps', [...INSTRUMENT, PITCH]],
+  ['maps', [NAME, ...INSTRUMENT, PITCH]],
   ['channel', [...SIZES, ...PLACE, ...INLET, ...WALL, ORIGIN]],
   ['calibration', GAUGE],
   ['runs', [...FLUID, ...FLOW_READINGS]],

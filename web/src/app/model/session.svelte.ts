@@ -33,9 +33,15 @@ class Session {
     await this.attempt(async () => {
       await this.refresh();
       await this.follow();
-      listen((event) => this.hear(event), (there) => (this.online = there));
+      listen((event) => this.hear(event), (there) => this.reached(there));
     });
     this.started = true;
+  }
+
+  private reached(there: boolean): void {
+    this.online = there;
+    // What could not be saved while the server was gone.
+    if (there && this.draft?.status === 'unsaved') void this.draft.save();
   }
 
   /** Does something that the server may refuse, and says so. */

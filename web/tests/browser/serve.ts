@@ -1,0 +1,112 @@
+// Starts `manoscope serve` on folders of their own. MANOSCOPE_PROGRAM names the program,
+// MANOSCOPE_EXPERIMENT a small experiment that measures in seconds.
+
+import { type ChildProcess, spawn } from 'node:child_process';
+import { cpSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { named } from './support';
+
+export const EXPERIMENT = () => named('MANOSCOPE_EXPERIMENT');
+export const MAPS = () => readdirSync(EXPERIMENT()).filter((name) => name.endsWith('.gsf')).sort();
+
+/** Rows of a list of the experiment, without its head. */
+export function rowsOf(list: string): string[][] {
+  const lines = readFileSync(join(EXPERIMENT(), list), 'utf8').split('\n').filter((line) => line !== '' && !line.startsWith('#'));
+  return lines.slice(1).map((line) => line.split(','));
+}
+
+export interface Served {
+  folder: string;
+  address: string; // with its token, good for one browser
+  stop: () => Promise<void>;
+}
+
+function firstAddress(program: ChildProcess): Promise<string> {
+  return new Promise((found, failed) => {
+    let said = '';
+    const hear = (text: Buffer) => {
+      said += text.toString();
+      const address = /http:\/\/127\.0\.0\.1:\d+\/\S*/.exec(said);
+      if (address) found(address[0]);
+    };
+    program.stdout!.on('data', hear);
+    program.stderr!.on('data', hear);
+    program.on('exit', () => failed(new Error(`manoscope serve ended: ${said}`)));
+  });
+}
+
+/** Serves a folder; `fill` puts into it what the test begins with. */
+export async function serve(fill: (folder: string) => void = () => {}): Promise<Served> {
+  const folder = mkdtempSync(join(tmpdir(), 'manoscope-app-'));
+  fill(folder);
+  const program = spawn(resolve(named('MANOSCOPE_PROGRAM')), ['serve', folder, '--port', '0', '--no-browser'], { stdio: 'pipe' });
+  const address = await firstAddress(program);
+  const stop = async () => {
+    const ended = new Promise((done) => program.on('exit', done));
+    program.kill('SIGINT');
+    await ended;
+    rmSync(folder, { recursive: true });
+  };
+  return { folder, address, stop };
+}
+
+/** The whole experiment as the program made it, without its truth. */
+export const withExperiment = (folder: string, into = '') =>
+  cpSync(EXPERIMENT(), join(folder, into), { recursive: true, filter: (from) => !/truth|\.manoscope/.test(from) });
+export const withMaps = (folder: string) => {
+  for (const map of MAPS()) cpSync(join(EXPERIMENT(), map), join(folder, map));
+};
+
+export interface Opened {
+  page: Page;
+  context: BrowserContext;
+  foreign: string[]; // requests to any other server
+  faults: string[]; // messages of the console and errors nobody caught
+}
+
+function watch(page: Page, origin: string): Pick<Opened, 'foreign' | 'faults'> {
+  const seen = { foreign: [] as string[], faults: [] as string[] };
+  page.on('request', (request) => {
+    const url = request.url();
+    if (!url.startsWith(origin) && !/^(data|blob|about):/.test(url)) seen.foreign.push(url);
+  });
+  page.on('console', (message) => seen.faults.push(message.text()));
+  page.on('pageerror', (error) => seen.faults.push(error.message));
+  return seen;
+}
+
+export async function openApp(browser: Browser, served: Served, options: BrowserContextOptions = {}): Promise<Opened> {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
+  const page = await context.newPage();
+  const { origin } = new URL(served.address);
+  await context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin });
+  const seen = watch(page, origin);
+  await page.goto(served.address);
+  await page.getByRole('heading', { name: 'Maps' }).waitFor();
+  return { page, context, ...seen };
+}
+
+/** One more tab of the same browser. */
+export async function openTab({ context, page: first }: Opened): Promise<Page> {
+  const page = await context.newPage();
+  await page.goto(first.url());
+  await page.getByRole('navigation', { name: 'Steps' }).waitFor();
+  return page;
+}
+
+export const go = (page: Page, step: string) =>
+  page.getByRole('navigation', { name: 'Steps' }).getByRole('button', { name: new RegExp(`^${step}`) }).click();
+
+/** Waits until what was typed stands in the file. */
+export const saved = (page: Page) => page.getByTestId('saved').getByText('saved', { exact: true }).waitFor();
+
+/** Pastes as a hand does: from the clipboard, into the cell that has the cursor. */
+export async function pasteInto(page: Page, cell: string, text: string): Promise<void> {
+  await page.evaluate((words) => navigator.clipboard.writeText(words), text);
+  await page.getByLabel(cell, { exact: true }).click();
+  await page.keyboard.press('Control+V');
+}
+
+export const toml = (served: Served, file = 'experiment.toml') => readFileSync(join(served.folder, file), 'utf8');
