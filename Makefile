@@ -145,11 +145,11 @@ simulation-check: ## its flows against independent solutions, in three dimension
 	@cmake --build $(BUILD) -j $(JOBS) --target navier_stokes_test
 	$(BUILD)/tests/navier_stokes_test --gtest_also_run_disabled_tests
 
-web: ## build script and style of report.html, web/dist, from web/
+web: ## build scripts and styles of report.html and the local app, web/dist, from web/
 	@$(install_web)
 	@tools/web.sh build
 
-web-check: all ## types and tests of web/, web/dist as built, report.html in a browser
+web-check: all ## types and tests of web/, web/dist as built, report.html and the app in a browser
 	@$(install_web)
 	@tools/web.sh check $(BUILD)/manoscope
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds the script and style of report.html from web/, or checks what was built.
+# Builds scripts and styles of report.html and of the local app from web/, or checks what was built.
 #
 #   tools/web.sh build             web/dist from web/
-#   tools/web.sh check PROGRAM     types, unit tests, web/dist as built, and report.html in a browser
+#   tools/web.sh check PROGRAM     types, unit tests, web/dist as built, report.html and the app in a browser
 #
 # Needs node and npm; `check` also chromium, found on the PATH or named in the variable CHROMIUM.
 set -euo pipefail
@@ -45,6 +45,17 @@ make_pages() {
   "$program" report "$pages/without-maps" >/dev/null
 }
 
+# Of that experiment every third level and run: it measures in seconds.
+make_small_experiment() {
+  local whole=$1 small=$2 list map
+  mkdir "$small"
+  cp "$whole/experiment.toml" "$small"
+  for list in hydrostatic.csv flow.csv; do
+    grep -v '^#' "$whole/$list" | awk 'NR == 1 || NR % 3 == 2' >"$small/$list"
+    for map in $(tail -n +2 "$small/$list" | cut -d, -f1); do cp "$whole/$map" "$small"; done
+  done
+}
+
 cd "$here"
 case ${1:-} in
   build)
@@ -61,8 +72,10 @@ case ${1:-} in
     npm --prefix web run --silent unit
     check_bundle "$work/dist"
     make_pages "$program" "$work"
+    make_small_experiment "$work/experiment" "$work/small"
     MANOSCOPE_REPORT=$work/result/report.html \
       MANOSCOPE_REPORT_WITHOUT_MAPS=$work/without-maps/report.html \
+      MANOSCOPE_PROGRAM=$program MANOSCOPE_EXPERIMENT=$work/small \
       npm --prefix web run --silent browser
     ;;
   *) fail "usage: tools/web.sh build | check PROGRAM" ;;

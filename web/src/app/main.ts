@@ -1,6 +1,8 @@
 import 'uplot/dist/uPlot.min.css';
 import '../chart/chart.css';
-import './app.css';
+import './style/page.css';
+import './style/forms.css';
+import './style/views.css';
 import { mount } from 'svelte';
 import App from './App.svelte';
 import { session } from './model/session.svelte';

@@ -21,8 +21,8 @@ beforeAll(async () => {
       expect(text).toMatch(from);
       writeFileSync(join(folder, file), text.replace(from, to));
     };
-    change('experiment.toml', /^height = ".*?"/m, 'height = "175"   # CONFIRM');
-    change('hydrostatic.csv', /^(h03\.gsf,)[^,]*/m, '$1?');
+    change('experiment.toml', /^height = ".*?"/m, 'height = "175" # CONFIRM');
+    change('hydrostatic.csv', /^(h0[1-9]\.gsf,)[^,]*/m, '$1?');
   });
 });
 afterAll(async () => {

@@ -82,6 +82,7 @@ export async function openApp(browser: Browser, served: Served, options: Browser
   const page = await context.newPage();
   const { origin } = new URL(served.address);
   await context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin });
+  context.setDefaultTimeout(15_000);
   const seen = watch(page, origin);
   await page.goto(served.address);
   await page.getByRole('heading', { name: 'Maps' }).waitFor();

@@ -41,6 +41,7 @@ export interface Experiment {
   file: string;
   revision: string | null;
   text: string;
+  lists: Record<string, string>; // texts of the list files, by the names that the text gives them
   form: Form | null; // null: the text is no TOML
   faults: Fault[];
   notes: string[];
@@ -56,7 +57,7 @@ export interface FolderState {
   revision: string;
   folder: { name: string; path: string };
   experiments: { file: string; folder: string; name: string | null; modified: number }[];
-  results: { folder: string; modified: number; report: boolean; experiment_name: string | null }[];
+  results: { folder: string; modified: number; report: boolean }[];
   truncated: boolean;
   job: Job | null;
 }

@@ -1,8 +1,10 @@
 // The experiment that is open: what the page holds of its file, and how both stay the same.
 
 import { Refused, api } from '../api/client';
-import type { Body, Experiment, Fault, Form } from '../api/types';
+import { SvelteSet } from 'svelte/reactivity';
+import type { Body, Experiment, Fault, Form, Pair, Text } from '../api/types';
 import { differences } from './differences';
+import { setField } from './fields';
 import { type ListName, sentList } from './lists';
 import { type Kept, forget, keep, kept } from './unsaved';
 
@@ -31,6 +33,7 @@ export class Draft {
   readonly file: string;
   form = $state<Form | null>(null);
   text = $state(''); // as the file has it, or will have it
+  lists = $state.raw<Record<string, string>>({}); // texts of its lists
   typed = $state<string | null>(null); // the text while it is edited itself
   faults = $state.raw<Fault[]>([]);
   notes = $state.raw<string[]>([]);
@@ -39,6 +42,7 @@ export class Draft {
   trouble = $state(''); // why nothing can be saved
   conflict = $state.raw<Experiment | null>(null); // the file as others left it
   told = $state(''); // what happened to the file from outside
+  readonly touched = new SvelteSet<string>(); // fields that were set here
   private revision: string | null = null;
   private undone = $state.raw<string[]>([]);
   private base = ''; // the form before the change that is being made
@@ -74,6 +78,12 @@ export class Draft {
     if (this.base === '') this.base = JSON.stringify(this.form);
     change(this.form);
     this.changed();
+  }
+
+  /** Sets one field; what stood there as a guess is none any more. */
+  set(path: string, value: Text | Pair): void {
+    this.touched.add(path);
+    this.edit((form) => setField(form, path, value));
   }
 
   undo(): void {
@@ -245,6 +255,7 @@ export class Draft {
   private hear(experiment: Experiment, rows: Record<ListName, number[]>): void {
     this.revision = experiment.revision;
     this.text = experiment.text;
+    this.lists = experiment.lists;
     this.faults = placed(experiment.faults, rows);
     this.notes = experiment.notes;
     this.mapsChecked = experiment.maps_checked;

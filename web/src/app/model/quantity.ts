@@ -56,10 +56,10 @@ export function cellIn(text: string, unit: string, scale: Scale): string {
   return from === null || to === null ? text.trim() : cleanNumber((quantity.number * from) / to);
 }
 
-/** A length as the forms write it, in the unit of what stood there before. */
+/** A length as the forms write it, to 0.1 um, in the unit of what stood there before. */
 export function lengthText(metres: number, like: string | undefined): string {
   const unit = like === undefined ? 'mm' : (quantityOf(like)?.unit ?? 'mm');
   const factor = Object.hasOwn(LENGTHS, unit) ? LENGTHS[unit] : 1e-3;
   const named = Object.hasOwn(LENGTHS, unit) ? unit : 'mm';
-  return `${cleanNumber(Math.round(metres * 1e8) / 1e8 / factor)} ${named}`;
+  return `${cleanNumber(Math.round(metres * 1e7) / 1e7 / factor)} ${named}`;
 }

@@ -10,16 +10,17 @@ const MOST_LINES = 400; // of a job's log, as the server keeps
 class Session {
   state = $state.raw<FolderState | null>(null);
   draft = $state.raw<Draft | null>(null);
-  entries = $state.raw<Entry[]>([]); // of the folder of the experiment
+  entries = $state.raw<Entry[]>([]); // of the folder of the experiment, or of the one that is browsed
+  browsed = $state(''); // folder that is looked at while no experiment is open
   job = $state<Job | null>(null);
   online = $state(true);
   step = $state<Step>('maps');
   trouble = $state('');
   started = $state(false);
 
-  /** Folder of the experiment, else the served one. */
+  /** Folder of the experiment, else the one that is browsed; "" for the served one itself. */
   get folder(): string {
-    return this.draft?.folder ?? '';
+    return this.draft?.folder ?? this.browsed;
   }
   get maps(): string[] {
     return this.entries.filter(({ map }) => map).map(({ name }) => name);
@@ -63,16 +64,24 @@ class Session {
   }
 
   private async readFolder(): Promise<void> {
-    this.entries = (await api.files(this.folder)).entries;
+    try {
+      this.entries = (await api.files(this.folder)).entries;
+    } catch (error) {
+      // A new folder comes to be with the first map that is brought there.
+      if (!(error instanceof Refused) || error.status !== 404) throw error;
+      this.entries = [];
+    }
   }
 
-  /** Where an address such as "#/channel/s1/experiment.toml" leads. */
+  /** Where an address such as "#/channel/s1/experiment.toml" leads, or "#/maps/s1/" to a folder. */
   private async follow(): Promise<void> {
     const [, step, file] = /^#\/([a-z]+)(?:\/(.*))?$/.exec(location.hash) ?? [];
     const known = STEPS.find(({ name }) => name === step)?.name ?? 'maps';
     const list = this.state?.experiments ?? [];
-    const wanted = file === undefined ? (list.length === 1 ? list[0].file : null) : decodeURIComponent(file);
-    if (wanted !== (this.draft?.file ?? null)) await this.attempt(() => this.read(wanted));
+    const named = file === undefined ? (list.length === 1 ? list[0].file : '/') : decodeURIComponent(file);
+    const wanted = named.endsWith('/') ? null : named;
+    if (wanted === null) this.browsed = named.slice(0, -1);
+    if (wanted === null || wanted !== this.draft?.file) await this.attempt(() => this.read(wanted));
     this.go(known);
   }
 
@@ -84,12 +93,14 @@ class Session {
 
   go(step: Step): void {
     this.step = step;
-    const file = this.draft ? `/${encodeURI(this.draft.file)}` : '';
+    const file = `/${encodeURI(this.draft?.file ?? `${this.browsed}/`)}`;
     const address = `#/${step}${file}`;
     if (location.hash !== address) history.replaceState(null, '', address);
   }
 
-  async open(file: string | null): Promise<void> {
+  /** Opens an experiment, or none: then a folder of maps. */
+  async open(file: string | null, folder = ''): Promise<void> {
+    this.browsed = folder;
     await this.attempt(() => this.read(file));
     this.go('maps');
   }

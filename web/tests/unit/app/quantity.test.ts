@@ -39,7 +39,7 @@ describe('a cell', () => {
 });
 
 it('a length is written in the unit that stood there', () => {
-  expect(lengthText(4.12345678e-4, '0.4 mm')).toBe('0.41235 mm'); // to 10 nm
+  expect(lengthText(4.12345678e-4, '0.4 mm')).toBe('0.4123 mm'); // to 0.1 um
   expect(lengthText(4.1e-4, '400 um')).toBe('410 um');
   expect(lengthText(4.1e-4, undefined)).toBe('0.41 mm');
   expect(lengthText(4.1e-4, '4 furlong')).toBe('0.41 mm');

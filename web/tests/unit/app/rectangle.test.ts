@@ -50,8 +50,8 @@ describe('the rectangle of a file', () => {
       writeRectangle(form, r, true);
       const read = statedRectangle(form, SIZE)!;
       corners(read).forEach(([x, y], i) => {
-        // Lengths are written to 10 nm, the angle to a thousandth of a degree.
-        expect(Math.hypot(x - corners(r)[i][0], y - corners(r)[i][1])).toBeLessThan(5e-8);
+        // Lengths are written to 0.1 um, the angle to a thousandth of a degree, over 1.4 mm.
+        expect(Math.hypot(x - corners(r)[i][0], y - corners(r)[i][1])).toBeLessThan(2e-7);
       });
     }
   });
