@@ -227,7 +227,7 @@ describe('what is typed', () => {
     const before = toml(served, 's1/experiment.toml');
     await field(page, 'experiment.toml').fill('manoscope = 1\n[channel\n');
     await go(page, 'Check');
-    await page.getByTestId('faults').getByText(/line \d/).waitFor();
+    await page.getByTestId('faults').getByText(/line \d/).first().waitFor();
     await page.getByRole('button', { name: 'Discard' }).click();
     await page.getByText('No fault found.').waitFor();
     expect(toml(served, 's1/experiment.toml')).toBe(before);
@@ -294,7 +294,7 @@ describe('a measurement', () => {
   it('is cancelled, from either of two tabs, and writes nothing', async () => {
     const { page, served, opened } = all;
     await go(page, 'Measure');
-    await page.getByText('Options', { exact: true }).click();
+    await page.locator('summary', { hasText: 'Options' }).click();
     await field(page, 'draws').fill('1000000'); // minutes
     await page.getByRole('button', { name: 'Measure', exact: true }).last().click();
     await page.getByRole('button', { name: 'Cancel' }).waitFor();
@@ -311,7 +311,7 @@ describe('a measurement', () => {
 
   it('that fails says why', async () => {
     const { page } = all;
-    await page.getByText('Options', { exact: true }).click();
+    await page.locator('summary', { hasText: 'Options' }).click();
     await field(page, 'draws').fill('many');
     await page.getByRole('button', { name: 'Measure', exact: true }).last().click();
     await page.getByRole('alert').getByText('many').waitFor();

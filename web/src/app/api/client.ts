@@ -68,7 +68,10 @@ export const api = {
     ask<Experiment>('POST', '/api/check', json({ file, ...body, ...(maps ? { maps } : {}) })),
   save: (file: string, body: Body, revision: string | null) => {
     const known: Record<string, string> = revision === null ? { 'If-None-Match': '*' } : { 'If-Match': `"${revision}"` };
-    return ask<Experiment>('PUT', `/api/experiment?${query({ file })}`, json({ file, ...body }, known));
+    const init = json({ file, ...body }, known);
+    // Outlives the page, where a browser lets it.
+    const keepalive = String(init.body).length < 60_000;
+    return ask<Experiment>('PUT', `/api/experiment?${query({ file })}`, { ...init, keepalive });
   },
   draft: (folder: string) =>
     ask<{ file: string; unassigned: string[]; no_maps: string[] }>('POST', '/api/experiment/draft', json({ folder })),

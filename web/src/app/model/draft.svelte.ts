@@ -1,7 +1,7 @@
 // The experiment that is open: what the page holds of its file, and how both stay the same.
 
-import { Refused, api } from '../api/client';
 import { SvelteSet } from 'svelte/reactivity';
+import { Refused, api } from '../api/client';
 import type { Body, Experiment, Fault, Form, Pair, Text } from '../api/types';
 import { differences } from './differences';
 import { setField } from './fields';
@@ -134,8 +134,13 @@ export class Draft {
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
       this.status = 'unsaved';
-      if (error.status === 412) this.conflict = (error.body as { experiment: Experiment }).experiment;
-      else this.trouble = error.words;
+      if (error.status !== 412) {
+        this.trouble = error.words;
+        return null;
+      }
+      const there = (error.body as { experiment: Experiment }).experiment;
+      if (same(body, there)) return there;
+      this.conflict = there;
       return null;
     }
   }
@@ -172,9 +177,10 @@ export class Draft {
   }
 
   async discardTyped(): Promise<void> {
+    const there = await api.experiment(this.file);
     this.typed = null;
     forget(this.place);
-    await this.readAgain();
+    this.take(there);
   }
 
   /** Looks whether the file is still the one that is shown. */
@@ -196,11 +202,6 @@ export class Draft {
 
   private isSaving(): boolean {
     return this.status === 'saving';
-  }
-
-  private async readAgain(): Promise<void> {
-    const there = await api.experiment(this.file);
-    this.take(there);
   }
 
   /** In a conflict: what the file says now. */
@@ -263,12 +264,11 @@ export class Draft {
   }
 
   private resume(unsaved: Kept, experiment: Experiment): void {
-    // The page may have gone while its last words were on their way, and they arrived.
-    const arrived = unsaved.form && experiment.form && differences(sentForm(unsaved.form).form, experiment.form);
-    if (unsaved.text === experiment.text || arrived?.length === 0) return forget(this.place);
-    if (unsaved.text !== undefined) this.typed = unsaved.text;
-    else if (unsaved.form) this.form = unsaved.form;
-    else return;
+    const { form, text } = unsaved;
+    const body = text !== undefined ? { text } : form ? sentForm(form) : null;
+    if (body === null || same(body, experiment)) return forget(this.place);
+    if (text !== undefined) this.typed = text;
+    else this.form = form!;
     if (unsaved.revision !== experiment.revision) {
       this.status = 'unsaved';
       this.conflict = experiment;
@@ -278,6 +278,12 @@ export class Draft {
       void this.save();
     }
   }
+}
+
+/** Whether a file says it already: the page may have gone while its last words were on their way. */
+function same(body: Body, { text, form }: Experiment): boolean {
+  if ('text' in body) return body.text === text;
+  return form !== null && differences(body.form, form).length === 0;
 }
 
 /** Faults of lists at the rows that the page shows. */

@@ -1,6 +1,6 @@
 // The tables of an experiment: levels of the calibration, runs under flow.
 
-import type { Entry, List } from '../api/types';
+import type { List } from '../api/types';
 import { FLOW_RATES, PRESSURES, TIMES, cellIn } from './quantity';
 
 export type ListName = 'hydrostatic' | 'flow';
@@ -87,15 +87,15 @@ export function typedCell(which: ListName, column: string, text: string): string
 /** Name of a map in a list without the page of its file: "stack.tif#3" -> "stack.tif". */
 export const fileOfMap = (map: string) => map.replace(/#\d+$/, '');
 
-/** Maps of the folder that no list names. */
-export function unlisted(entries: Entry[], lists: (List | null)[]): string[] {
+/** Maps that no list names. */
+export function unlisted(maps: string[], lists: (List | null)[]): string[] {
   const listed = new Set<string>();
   for (const list of lists) {
     if (list === null) continue;
     const at = indexOf(list, 'map');
     for (const row of list.rows) listed.add(fileOfMap(row[at] ?? ''));
   }
-  return entries.filter(({ map, name }) => map && !listed.has(name)).map(({ name }) => name);
+  return maps.filter((map) => !listed.has(map));
 }
 
 export const isEmptyRow = (row: string[]) => row.every((cell) => cell.trim() === '');

@@ -22,8 +22,10 @@ class Session {
   get folder(): string {
     return this.draft?.folder ?? this.browsed;
   }
+  /** Maps of the folder; a list is a table of numbers, too, but none of them. */
   get maps(): string[] {
-    return this.entries.filter(({ map }) => map).map(({ name }) => name);
+    const lists = Object.keys(this.draft?.lists ?? {});
+    return this.entries.filter(({ map, name }) => map && !lists.includes(name)).map(({ name }) => name);
   }
   get running(): boolean {
     return this.job?.state === 'running';
