@@ -13,6 +13,11 @@ export class Refused extends Error {
   ) {
     super(words);
   }
+
+  /** What was found and what to do, apart. */
+  get said(): Said {
+    return (this.body as { error?: Said } | null)?.error ?? { found: this.words.replace(/\.$/, ''), mend: '' };
+  }
 }
 
 type Said = Pick<Fault, 'found' | 'mend'>;

@@ -1,6 +1,6 @@
 // The served folder, the job that runs in it, and what of it the page shows.
 
-import { Refused, api, listen } from '../api/client';
+import { Refused, api, listen, pathAddress } from '../api/client';
 import type { Entry, Event, FolderState, Job } from '../api/types';
 import { Draft } from './draft.svelte';
 import { STEPS, type Step } from './fields';
@@ -42,9 +42,22 @@ class Session {
   }
 
   private reached(there: boolean): void {
+    const again = there && !this.online;
     this.online = there;
-    // What could not be saved while the server was gone.
-    if (there && this.draft?.status === 'unsaved') void this.draft.save();
+    if (!again) return;
+    // What could not be saved or heard while the server was gone.
+    if (this.draft?.status === 'unsaved') void this.draft.save();
+    void this.meanwhile(() => this.heed([this.draft?.file ?? '']));
+  }
+
+  /** Does something that nobody asked for: a server that does not answer is told by itself. */
+  private async meanwhile(act: () => Promise<void>): Promise<void> {
+    try {
+      await act();
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      if (error.status !== 0) this.trouble = error.words;
+    }
   }
 
   /** Does something that the server may refuse, and says so. */
@@ -95,8 +108,7 @@ class Session {
 
   go(step: Step): void {
     this.step = step;
-    const file = `/${encodeURI(this.draft?.file ?? `${this.browsed}/`)}`;
-    const address = `#/${step}${file}`;
+    const address = `#/${step}/${pathAddress(this.draft?.file ?? `${this.browsed}/`)}`;
     if (location.hash !== address) history.replaceState(null, '', address);
   }
 
@@ -110,8 +122,8 @@ class Session {
   private hear(event: Event): void {
     if (event.type === 'hello') this.job = event.job;
     else if (event.type === 'start' || event.type === 'end') this.job = event.job;
-    else if (event.type === 'files') void this.attempt(() => this.heed(event.changed));
-    if (event.type === 'end') void this.attempt(() => this.refresh());
+    else if (event.type === 'files') void this.meanwhile(() => this.heed(event.changed));
+    if (event.type === 'end') void this.meanwhile(() => this.refresh());
     if (this.job === null) return;
     if (event.type === 'progress' && event.job === this.job.id) {
       this.job.stage = event.stage;
