@@ -163,7 +163,9 @@ describe('from an empty folder to a report', () => {
     await page.getByRole('row', { name: /^f00 4\.000/ }).waitFor(); // a run without a name is called like its map
     const report = page.frameLocator('iframe');
     await report.locator('#summary').waitFor();
-    await report.locator('#explore canvas').first().waitFor(); // its script runs
+    // Its script runs: views are drawn when they are looked at.
+    await report.locator('#explore .chart').first().scrollIntoViewIfNeeded();
+    await report.locator('#explore canvas').first().waitFor();
   });
 
   it('measures again, elsewhere', async () => {

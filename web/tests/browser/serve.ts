@@ -19,7 +19,8 @@ export function rowsOf(list: string): string[][] {
 
 export interface Served {
   folder: string;
-  address: string; // with its token, good for one browser
+  address: string; // with its token, which is good once
+  known?: Awaited<ReturnType<BrowserContext['storageState']>>; // of the browser that used it
   stop: () => Promise<void>;
 }
 
@@ -78,14 +79,15 @@ function watch(page: Page, origin: string): Pick<Opened, 'foreign' | 'faults'> {
 }
 
 export async function openApp(browser: Browser, served: Served, options: BrowserContextOptions = {}): Promise<Opened> {
-  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, ...options });
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, storageState: served.known, ...options });
   const page = await context.newPage();
   const { origin } = new URL(served.address);
   await context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin });
   context.setDefaultTimeout(15_000);
   const seen = watch(page, origin);
-  await page.goto(served.address);
+  await page.goto(served.known ? origin : served.address);
   await page.getByRole('heading', { name: 'Maps' }).waitFor();
+  served.known = await context.storageState();
   return { page, context, ...seen };
 }
 
