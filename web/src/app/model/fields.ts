@@ -36,13 +36,13 @@ export const SIZES = [
 
 export const PLACE = [
   choice('channel.flow', 'The flow runs', [
-    ['+columns', 'to the right (+columns)'],
-    ['-columns', 'to the left (-columns)'],
-    ['+rows', 'downwards (+rows)'],
-    ['-rows', 'upwards (-rows)'],
+    ['+columns', 'right (+columns)'],
+    ['-columns', 'left (-columns)'],
+    ['+rows', 'down (+rows)'],
+    ['-rows', 'up (-rows)'],
   ]),
   field('channel.rotation', 'Rotation', '0 deg', 'clockwise in the map'),
-  choice('channel.outward', 'A wall bulging out reads', [
+  choice('channel.outward', 'Bulging out reads', [
     ['+height', 'higher (+height)'],
     ['-height', 'lower (-height)'],
   ]),
