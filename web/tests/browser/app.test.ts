@@ -24,11 +24,11 @@ function begin(fill: (folder: string) => void): { served: Served; opened: Opened
     all.page = all.opened.page;
   });
   afterAll(async () => {
+    await all.opened?.context.close();
+    await all.served?.stop();
     expect(all.opened.foreign).toEqual([]);
     // An answer that refuses is told by the browser, too; it is tested where it is due.
     expect(all.opened.faults.filter((text) => !text.startsWith('Failed to load resource'))).toEqual([]);
-    await all.opened.context.close();
-    await all.served.stop();
   });
   return all;
 }
