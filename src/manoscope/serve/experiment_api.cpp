@@ -80,10 +80,9 @@ json experiment_json(const Folder& folder, const ExperimentDraft& draft, const j
 
 }  // namespace
 
-ExperimentDraft draft_from(const Folder& folder, const std::string& file, const std::string& body) {
-  const json object = parse_object(body);
-  ExperimentDraft draft =
-      load_experiment(folder, file).value_or(ExperimentDraft{file, {"manoscope = 1\n", {}}});
+ExperimentDraft draft_from(const Folder& folder, const std::string& file,
+                           const std::optional<ExperimentDraft>& old, const json& object) {
+  ExperimentDraft draft = old.value_or(ExperimentDraft{file, {"manoscope = 1\n", {}}});
   const auto form = object.find("form"), text = object.find("text");
   if (form != object.end() && !form->is_null()) {
     draft.texts = experiment::apply_form(draft.texts, form_from(*form));
@@ -113,7 +112,7 @@ Reply ExperimentApi::check(const Request& request, const Monitor& monitor) const
   const json object = parse_object(request.body);
   const std::string file = experiment_file(text_in(object, "file", ""));
   const auto old = load_experiment(*folder_, file);
-  const ExperimentDraft draft = draft_from(*folder_, file, request.body);
+  const ExperimentDraft draft = draft_from(*folder_, file, old, object);
   return json_reply(experiment_json(*folder_, draft, old ? json(revision_of(*old)) : json(nullptr),
                                     flag_in(object, "maps") ? &monitor : nullptr));
 }
@@ -136,7 +135,7 @@ Reply ExperimentApi::write(const Request& request) {
     answer["experiment"] = experiment_json(*folder_, *old, revision_of(*old));
     return json_reply(answer, 412);
   }
-  const ExperimentDraft draft = draft_from(*folder_, file, request.body);
+  const ExperimentDraft draft = draft_from(*folder_, file, old, parse_object(request.body));
   write_experiment(*folder_, old, draft);
   const auto written = load_experiment(*folder_, file);
   if (!written) refuse_missing(file);

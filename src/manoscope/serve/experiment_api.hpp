@@ -1,6 +1,9 @@
 #pragma once
 
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
 
 #include "manoscope/core/monitor.hpp"
 #include "manoscope/serve/experiment_files.hpp"
@@ -8,9 +11,12 @@
 
 namespace manoscope::serve {
 
-/// The draft in a request: `form`, or `text` and `lists`, over what is on the disk.
+/// The draft in a request: `form`, or `text` and `lists`.
+/// @param old  what is on the disk, if anything is: a form is held against it.
 /// @throws ApiError 400 if there is neither; InputError as apply_form().
-ExperimentDraft draft_from(const Folder& folder, const std::string& file, const std::string& body);
+ExperimentDraft draft_from(const Folder& folder, const std::string& file,
+                           const std::optional<ExperimentDraft>& old,
+                           const nlohmann::json& request);
 
 /// Experiments as the page sees them; safe to call from several threads.
 class ExperimentApi {

@@ -109,8 +109,10 @@ json frame_json(const ChannelFrame& frame, const CameraGrid& camera) {
 }  // namespace
 
 Reply place_reply(const Folder& folder, const std::string& body) {
-  const std::string file = experiment_file(text_in(parse_object(body), "file", ""));
-  const Experiment experiment = understood(folder, draft_from(folder, file, body));
+  const json request = parse_object(body);
+  const std::string file = experiment_file(text_in(request, "file", ""));
+  const auto old = load_experiment(folder, file);
+  const Experiment experiment = understood(folder, draft_from(folder, file, old, request));
   check_enough(experiment, file);
   const maps::FoundPlace place = pipeline::place_channel(experiment);
   const ChannelFrame& frame = place.frame;
