@@ -12,6 +12,8 @@ DEMO ?= manoscope-demo
 PACKAGES ?= yes
 SOLVER ?= yes
 PRACTICE ?= ../shared/data/practice
+# Of `make side-walls`.
+EXPERIMENT ?= $(PRACTICE)/S1
 CMAKE_FLAGS ?=
 # Of `make fuzz` and `make fuzz-coverage`.
 FUZZ_FILES ?= 100000
@@ -54,7 +56,7 @@ configure = cmake -S . -B $(BUILD) --log-level=WARNING \
 without_tests = $(if $(wildcard $(BUILD)/build.ninja),,-DMANOSCOPE_TESTS=OFF)
 
 .NOTPARALLEL:
-.PHONY: all demo test bench bench-flow docs accuracy coverage verdicts goals planning flow-models \
+.PHONY: all demo test side-walls bench bench-flow docs accuracy coverage verdicts goals planning flow-models \
         simulation simulation-check web web-check check format format-check layers \
         scripts tidy tidy-changed asan asan-changed asan-all fuzz fuzz-coverage clean \
         install-packages help
@@ -144,6 +146,9 @@ simulation-check: ## its flows against independent solutions, in three dimension
 	@$(configure) -DMANOSCOPE_TESTS=ON
 	@cmake --build $(BUILD) -j $(JOBS) --target navier_stokes_test
 	$(BUILD)/tests/navier_stokes_test --gtest_also_run_disabled_tests
+
+side-walls: all ## what side walls do to a simulation: figure and table of docs/side-walls.md, minutes
+	/usr/bin/python3 tools/side_walls.py $(BUILD)/manoscope $(EXPERIMENT) docs
 
 web: ## build scripts and styles of report.html and the local app, web/dist, from web/
 	@$(install_web)
