@@ -157,6 +157,7 @@ json run_json(const Simulation& s) {
           {"roof_map", s.roof_map != 0.0},
           {"roof_taken_m", number(s.roof_taken)},
           {"roof_noise_m", number(s.roof_noise)},
+          {"roof_end_taken_m", number(s.roof_end_taken)},
           {"roof_misfit", number(s.roof_misfit)},
           {"roof_departure_m", number(s.roof_departure)},
           {"roof_effect", number(s.roof_effect)},

@@ -20,11 +20,12 @@ std::string change(double share) {
 std::string map_words(const validation::SmoothRoof& roof, const validation::RoofEffect& effect) {
   return fmt::format(
       "across as its own maps show, by {} even and {} odd departures from the shape between lowest "
-      "and highest level: {:.2g} nm rms taken away a cell, stated noise {:.2g} nm; it departs by "
+      "and highest level: {:.2g} nm rms taken away a cell, stated noise {:.2g} nm ({:.2g} nm "
+      "within half a width of the ends); it departs by "
       "{:.3g} nm rms, which changes the drop of the channel by {}; what is odd across, {:.2g} ± "
       "{:.2g} nm rms, is left out and would change it by {}",
       roof.modes().n_even(), roof.modes().n_odd(), roof.taken().in(nm), roof.noise().in(nm),
-      roof.departure().in(nm), change(effect.departure), roof.odd().in(nm),
+      roof.end_taken().in(nm), roof.departure().in(nm), change(effect.departure), roof.odd().in(nm),
       2.0 * roof.odd_standard().in(nm), change(effect.odd));
 }
 

@@ -65,10 +65,11 @@ TEST_P(RoofOf, AClampedWallIsThatOfTheWallWithinItsErrors) {
     RecordProperty(run.name + ", bar nm", std::to_string(1e9 * std::sqrt(bars / n)));
     RecordProperty(run.name + ", one shape nm", std::to_string(1e9 * std::sqrt(one_shape / n)));
     RecordProperty(run.name + ", words", roof.words);
-    // Straight lines between pixels cut (pitch / w)^2 of the mean off the cells.
+    // Straight lines between pixels cut (pitch / w)^2 of the mean off the cells of a parabola, in
+    // the middle of a plate 2.5 times as much.
     const double pitch = scenario.camera.rim.si() * 2.0 + w;
     const double cut = std::pow(pitch / scenario.camera.n_across / w, 2) * mean.abs().mean();
-    EXPECT_LT(error, 2.0 * std::sqrt(bars / n) + cut) << run.name;
+    EXPECT_LT(error, 2.0 * std::sqrt(bars / n) + 2.0 * cut) << run.name;
     EXPECT_LT(error, 0.5 * std::sqrt(one_shape / n)) << run.name;
     EXPECT_LT(roof.map->misfit(), 1.3) << run.name;
     EXPECT_LT(std::abs(roof.effect->odd), 1e-4) << run.name;

@@ -82,6 +82,7 @@ void store_roof(const RunRoof& roof, Simulation& s) {
   s.roof_map = 1.0;
   s.roof_taken = roof.map->taken().si();
   s.roof_noise = roof.map->noise().si();
+  s.roof_end_taken = roof.map->end_taken().si();
   s.roof_misfit = roof.map->misfit();
   s.roof_departure = roof.map->departure().si();
   s.roof_effect = roof.effect->departure;

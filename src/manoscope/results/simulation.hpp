@@ -39,6 +39,7 @@ struct Simulation {
   double roof_map = 0.0;              ///< 1: below the run's own maps; 0: one shape, or a plane
   double roof_taken = kNoNumber;      ///< m, rms a cell, of what smoothing took away
   double roof_noise = kNoNumber;      ///< m, rms of the stated noise of a cell
+  double roof_end_taken = kNoNumber;  ///< m, the same within half a width of the ends
   double roof_misfit = kNoNumber;     ///< rms of what was taken away over the noise, cell by cell
   double roof_departure = kNoNumber;  ///< m, rms, from the shape between the levels
   double roof_effect = kNoNumber;     ///< of the channel's drop, what the departure changes

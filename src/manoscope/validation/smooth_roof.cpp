@@ -97,18 +97,26 @@ std::optional<SmoothRoof> SmoothRoof::through(const SmoothShape& along,
   for (Index k = 0; k < roof.modes_.size(); ++k) {
     roof.splines_.push_back(spline_of(found, k, roof.window_, channel));
   }
-  roof.judge(sections, means);
+  roof.middle_ = roof.judge(sections, means, false);
+  roof.ends_ = roof.judge(sections, means, true);
   return roof;
 }
 
-void SmoothRoof::judge(const CrossSections& sections, const Matrix& means) {
+bool SmoothRoof::near_end(double x) const {
+  const double reach = 0.5 * channel_.width.si();
+  return x < reach || x > channel_.length.si() - reach;
+}
+
+SmoothRoof::Judged SmoothRoof::judge(const CrossSections& sections, const Matrix& means,
+                                     bool ends) const {
   const double reach = window_ / (2.0 * std::numbers::sqrt3);
   const double length = channel_.length.si();
   const Matrix smooth = 0.5 * (departures((sections.x - reach).max(0.0)) +
                                departures((sections.x + reach).min(length)));
   double taken = 0.0, noise = 0.0, misfit = 0.0;
-  Index n_levels = 0;
+  Index n_levels = 0, n_cells = 0;
   for (Index j = 0; j < sections.x.size(); ++j) {
+    if (near_end(sections.x[j]) != ends) continue;
     Eigen::VectorXd weight(means.rows());
     for (Index b = 0; b < weight.size(); ++b) weight[b] = weight_of(sections, b, j);
     const Eigen::VectorXd rest =
@@ -123,13 +131,13 @@ void SmoothRoof::judge(const CrossSections& sections, const Matrix& means) {
       taken += off * off;
       noise += 1.0 / (weight[b] * weight[b]);
       misfit += std::pow(off * weight[b], 2);
-      ++n_cells_;
+      ++n_cells;
     }
   }
-  const auto n = static_cast<double>(n_cells_);
-  taken_ = std::sqrt(taken / n);
-  noise_ = std::sqrt(noise / n);
-  misfit_ = std::sqrt(misfit / static_cast<double>(n_cells_ - n_levels));
+  if (n_cells <= n_levels) return {};
+  const auto n = static_cast<double>(n_cells);
+  return {std::sqrt(taken / n), std::sqrt(noise / n),
+          std::sqrt(misfit / static_cast<double>(n_cells - n_levels))};
 }
 
 Matrix SmoothRoof::departures(const Array1& x) const {
@@ -142,10 +150,13 @@ Matrix SmoothRoof::departures(const Array1& x) const {
 
 Matrix SmoothRoof::departures_standard(const Array1& x) const {
   // What the departures miss is taken for more noise (Birge's ratio).
-  const double more = std::max(1.0, misfit_);
+  Array1 more(x.size());
+  for (Index i = 0; i < x.size(); ++i) {
+    more[i] = std::max(1.0, near_end(x[i]) ? ends_.misfit : middle_.misfit);
+  }
   Matrix result(x.size(), modes_.size());
   for (Index k = 0; k < modes_.size(); ++k) {
-    result.col(k) = more * splines_[static_cast<std::size_t>(k)].standard(x).matrix();
+    result.col(k) = (more * splines_[static_cast<std::size_t>(k)].standard(x)).matrix();
   }
   return result;
 }

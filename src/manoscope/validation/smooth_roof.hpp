@@ -54,13 +54,15 @@ class SmoothRoof {
   const SmoothShape& along() const { return along_; }
   const flow::Channel& channel() const { return channel_; }
 
-  // Root mean squares over the cells, of the shape across: the level of each stretch left free.
-  Length taken() const { return Length::from_si(taken_); }  ///< of what was taken away
-  Length noise() const { return Length::from_si(noise_); }  ///< of the stated noise
+  // Root mean squares over cells, of the shape across: the level of each stretch left free. The
+  // ends are what lies within half a width of them, where higher waves across die away within a
+  // fraction of w/pi and neither cells nor departures tell them all.
+  Length taken() const { return Length::from_si(middle_.taken); }  ///< of what was taken away
+  Length noise() const { return Length::from_si(middle_.noise); }  ///< of the stated noise
   /// Of both by cell, with the degrees of freedom of the levels taken off: 1 where the departures
   /// suffice.
-  double misfit() const { return misfit_; }
-  Index n_cells() const { return n_cells_; }
+  double misfit() const { return middle_.misfit; }
+  Length end_taken() const { return Length::from_si(ends_.taken); }
 
   // Root mean squares over the channel.
   Length departure() const;     ///< of the even departure from g
@@ -71,7 +73,13 @@ class SmoothRoof {
   SmoothRoof(const SmoothShape& along, const flow::Channel& channel, AcrossModes modes)
       : along_(along), channel_(channel), modes_(std::move(modes)) {}
   Array2 sum(const Array1& x, const Array1& z, Index n_departures) const;
-  void judge(const CrossSections& sections, const Matrix& means);
+  /// What the smooth roof leaves of cells; all 0 where there are none.
+  struct Judged {
+    double taken = 0.0, noise = 0.0;  ///< m
+    double misfit = 0.0;
+  };
+  bool near_end(double x) const;
+  Judged judge(const CrossSections& sections, const Matrix& means, bool ends) const;
   Length mean_square_root(Index first, Index n, bool of_standard) const;
 
   SmoothShape along_;
@@ -79,9 +87,7 @@ class SmoothRoof {
   AcrossModes modes_;
   std::vector<numerics::SmoothingSpline> splines_;  ///< one a departure
   double window_ = 0.0;                             ///< m, length of a stretch
-  double taken_ = 0.0, noise_ = 0.0;                ///< m
-  double misfit_ = 0.0;
-  Index n_cells_ = 0;
+  Judged middle_, ends_;
 };
 
 }  // namespace manoscope::validation
