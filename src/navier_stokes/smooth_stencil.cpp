@@ -31,7 +31,7 @@ void add_slope(const Array1& x, Index at, double share, SmoothStencil& stencil) 
 
 }  // namespace
 
-SmoothStencil::SmoothStencil(const Array1& stations, double at) : weight{} {
+SmoothStencil::SmoothStencil(const Array1& stations, double at) {
   const Index m = stations.size();
   MANO_ASSERT(m >= 2);
   const Index above = std::upper_bound(stations.begin(), stations.end(), at) - stations.begin();

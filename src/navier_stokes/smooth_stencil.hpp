@@ -14,8 +14,8 @@ namespace manoscope::navier_stokes {
 struct SmoothStencil {
   static constexpr Index kMost = 6;
 
-  Index first = 0, n = 0;            ///< stations first .. first + n - 1
-  std::array<double, kMost> weight;  ///< of each
+  Index first = 0, n = 0;              ///< stations first .. first + n - 1
+  std::array<double, kMost> weight{};  ///< of each
 
   /// @param stations  (m) strictly ascending, m >= 2.
   /// @param at        taken to the nearer end where it lies outside.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "manoscope/core/arrays.hpp"
@@ -70,8 +71,8 @@ class SmoothRoof {
   Length odd_standard() const;  ///< of the odd part's standard uncertainty
 
  private:
-  SmoothRoof(const SmoothShape& along, const flow::Channel& channel, AcrossModes modes)
-      : along_(along), channel_(channel), modes_(std::move(modes)) {}
+  SmoothRoof(SmoothShape along, const flow::Channel& channel, AcrossModes modes)
+      : along_(std::move(along)), channel_(channel), modes_(std::move(modes)) {}
   Array2 sum(const Array1& x, const Array1& z, Index n_departures) const;
   /// What the smooth roof leaves of cells; all 0 where there are none.
   struct Judged {
