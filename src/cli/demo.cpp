@@ -122,8 +122,7 @@ void demo(const Context& context, const std::filesystem::path& out) {
                   made.maps.size(), folder.string(), details_text(measurement, context.screen),
                   summary_text(measurement, context.screen), inertia_text(measurement),
                   split_text(verdict.split), simulation_part(measurement.simulations),
-                  judgement_text(verdict),
-                  (out / "report.html").string(), verdict_text(verdict)));
+                  judgement_text(verdict), (out / "report.html").string(), verdict_text(verdict)));
 }
 
 }  // namespace

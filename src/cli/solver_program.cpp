@@ -34,8 +34,7 @@ fs::path solver_path() {
 fs::path find_solver() {
   if (const fs::path found = solver_path(); !found.empty()) return found;
   throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
-                   "Run make, which installs deal.II and builds it beside manoscope unless told "
-                   "SOLVER=no");
+                   "Run make simulation, which installs deal.II and builds it beside manoscope");
 }
 
 /// A file for the solver to read, gone with the object.

@@ -338,8 +338,9 @@ TEST(Measure, ReportsProgressUpToTheEnd) {
     if (stage == "reducing maps") most = std::max(most, fraction);
   };
   measure(test.read(), {}, 1, monitor);
-  EXPECT_EQ(stages, (std::vector<std::string>{"finding the channel", "reducing maps",
-                                              "solving the wall", "reading p(x)"}));
+  EXPECT_EQ(stages,
+            (std::vector<std::string>{"finding the channel", "reducing maps", "solving the wall",
+                                      "reading p(x)", "checking without truth"}));
   EXPECT_EQ(most, 1.0);
 }
 
