@@ -32,7 +32,7 @@ fs::path solver_path() {
 }
 
 fs::path find_solver() {
-  if (const fs::path found = solver_path(); !found.empty()) return found;
+  if (fs::path found = solver_path(); !found.empty()) return found;
   throw InputError(kProgram, "the program that solves the Navier-Stokes equations is not installed",
                    "Run make simulation, which installs deal.II and builds it beside manoscope");
 }
