@@ -119,7 +119,9 @@ class NodePlanes {
 
  private:
   std::size_t n_nodes(int axis) const {
-    return static_cast<std::size_t>(order_ * discrete_.mesh.n_cells(axis) + 1);
+    return static_cast<std::size_t>(order_) *
+               static_cast<std::size_t>(discrete_.mesh.n_cells(axis)) +
+           1;
   }
   std::size_t place(const CellIndex<dim>& index, const dealii::Point<dim>& unit) const {
     std::size_t number = 0;

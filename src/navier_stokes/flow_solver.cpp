@@ -206,7 +206,7 @@ class Newton {
   BlockSolver* blocks_ = nullptr;  ///< solver_, where it is one
   std::optional<PressureOperators<dim>> pressure_operators_;
   dealii::PETScWrappers::MPI::Vector change_;
-  std::vector<char> is_pressure_;  ///< (owned)
+  std::vector<unsigned char> is_pressure_;  ///< (owned)
 };
 
 }  // namespace

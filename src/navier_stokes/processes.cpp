@@ -61,8 +61,8 @@ Processes::Processes() {
 }
 
 const Processes& Processes::all() {
-  static const Processes processes;
-  return processes;
+  static const Processes kAll;
+  return kAll;
 }
 
 std::vector<double> Processes::sum(std::vector<double> parts) const {
