@@ -74,7 +74,7 @@ def table(planes, wholes):
 def script_of(planes, wholes):
     """The gnuplot script: data inside, SVG on standard output."""
     lines = ["set terminal svg size 860,380 font 'sans-serif,13' background 'white'",
-             f"set multiplot layout 1,{len(planes)}", "set xlabel 'x [mm]'", "set key bottom left",
+             f"set multiplot layout 1,{len(planes)}", "set xlabel 'x [mm]'", "set key bottom left Left reverse samplen 1 font ',11'",
              "set grid lc rgb '#dddddd'", "set xrange [0:*]", "set yrange [0:*]"]
     for number, (run, plane) in enumerate(planes.items()):
         whole = wholes[run]

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <system_error>
 
 #include "manoscope/core/error.hpp"
 
@@ -225,6 +226,8 @@ void write_checkpoint(const fs::path& path, const typename FlowSolver<dim>::Disc
   }
   together(processes.comm(), [&] {
     if (!good) {
+      std::error_code ignored;
+      if (processes.is_lead()) fs::remove(beside, ignored);
       throw InputError(path.string(), "cannot be written",
                        "Check the folder, its permissions and the room on the disk; the checkpoint "
                        "before it is kept");
