@@ -2,27 +2,9 @@
 
 import json
 
-from support import Folder, hashes, main, run
+from support import Folder, TAUT_MEMBRANE, hashes, main, run
 
-MEMBRANE = """scenario = 1
-name = "taut"
-[channel]
-length = "8 mm"
-width = "1 mm"
-height = "100 um"
-[wall]
-law = "tapered_membrane"
-thickness = "0.3 um"
-youngs_modulus = "250 GPa"
-poisson_ratio = 0.23
-prestress = "50 MPa"
-[camera]
-n_along = 400
-n_across = 40
-noise = "5 nm"
-shift = "6.4 um"
-blobs = 0.0
-[gauge]
+MEMBRANE = TAUT_MEMBRANE + """[gauge]
 noise = "10 Pa"
 """
 FLOW = """[fluid]

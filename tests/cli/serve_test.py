@@ -11,28 +11,9 @@ import signal
 import subprocess
 import time
 
-from support import Folder, PROGRAM, main, run
+from support import Folder, PROGRAM, TAUT_MEMBRANE, main, run
 
-# A wall that is told by a formula, seen by a small camera: an experiment in a moment.
-SCENARIO = """scenario = 1
-name = "taut"
-[channel]
-length = "8 mm"
-width = "1 mm"
-height = "100 um"
-[wall]
-law = "tapered_membrane"
-thickness = "0.3 um"
-youngs_modulus = "250 GPa"
-poisson_ratio = 0.23
-prestress = "50 MPa"
-[camera]
-n_along = 400
-n_across = 40
-noise = "5 nm"
-shift = "6.4 um"
-blobs = 0.0
-[fluid]
+SCENARIO = TAUT_MEMBRANE + """[fluid]
 viscosity = "1 mPa s"
 density = "998 kg/m3"
 [hydrostatic]

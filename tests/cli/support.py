@@ -12,6 +12,27 @@ import unittest
 # The program is the first word after the name of the test.
 PROGRAM = sys.argv.pop(1)
 
+# Head of a scenario whose wall is told by a formula and seen by a small camera: a moment's work.
+TAUT_MEMBRANE = """scenario = 1
+name = "taut"
+[channel]
+length = "8 mm"
+width = "1 mm"
+height = "100 um"
+[wall]
+law = "tapered_membrane"
+thickness = "0.3 um"
+youngs_modulus = "250 GPa"
+poisson_ratio = 0.23
+prestress = "50 MPa"
+[camera]
+n_along = 400
+n_across = 40
+noise = "5 nm"
+shift = "6.4 um"
+blobs = 0.0
+"""
+
 
 def run(*arguments, cwd=None, check_code=None):
     done = subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, text=True, encoding="utf-8",
