@@ -65,8 +65,9 @@ TEST_P(RoofOf, AClampedWallIsThatOfTheWallWithinItsErrors) {
     RecordProperty(run.name + ", bar nm", std::to_string(1e9 * std::sqrt(bars / n)));
     RecordProperty(run.name + ", one shape nm", std::to_string(1e9 * std::sqrt(one_shape / n)));
     RecordProperty(run.name + ", words", roof.words);
-    // Straight lines between pixels cut (pitch / w)^2 of the mean off the cells of a parabola, in
-    // the middle of a plate 2.5 times as much.
+    // Straight lines between pixels cut (pitch / w)^2 of the mean off the cells of a parabola; off
+    // those of a clamped plate, whose curvature is (15/2)(4 - 12 s^2) against 12 of the mean over
+    // w^2, 2.2 times as much, rms.
     const double pitch = scenario.camera.rim.si() * 2.0 + w;
     const double cut = std::pow(pitch / scenario.camera.n_across / w, 2) * mean.abs().mean();
     EXPECT_LT(error, 2.0 * std::sqrt(bars / n) + 2.0 * cut) << run.name;
