@@ -69,7 +69,7 @@ double reattachment(double reynolds) {
 }
 
 TEST_F(PassageFlowTest, ReattachesBehindAStepWhereOthersFindIt) {
-  // E. Erturk, Computers & Fluids 37 (2008) 633, table 3, Re of the hydraulic diameter: 2 Re here.
+  // E. Erturk, Computers & Fluids 37 (2008) 633, Re of the hydraulic diameter: 2 Re here.
   // His inlet is developed, too; his grids leave some tenths of a percent, our cells 1 %.
   EXPECT_NEAR(reattachment(50.0) / 2.922, 1.0, 0.01);
   EXPECT_NEAR(reattachment(100.0) / 4.982, 1.0, 0.01);
