@@ -66,7 +66,7 @@ class CsvRowReader {
   std::optional<std::string> text(const std::string& column, io::Need need = io::Need::optional);
   std::optional<int> integer(const std::string& column, io::Need need = io::Need::optional);
   template <class E, std::size_t N>
-  std::optional<E> choice(const std::string& column, const io::Word<E> (&words)[N]) {
+  std::optional<E> choice(const std::string& column, const Word<E> (&words)[N]) {
     std::vector<std::string> names;
     for (const auto& word : words) names.emplace_back(word.word);
     const auto chosen = choose(column, names);

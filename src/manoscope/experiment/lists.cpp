@@ -26,8 +26,8 @@ constexpr ListColumn kFlowColumns[] = {
     {"outlet_pressure", io::unit_info<Pressure>(), io::Need::optional},
     {"time", io::unit_info<Time>(), io::Need::optional},
     {"run", kNoUnit, io::Need::optional}};
-constexpr io::Word<SweepDirection> kSweepDirections[] = {{"up", SweepDirection::up},
-                                                         {"down", SweepDirection::down}};
+constexpr Word<SweepDirection> kSweepDirections[] = {{"up", SweepDirection::up},
+                                                     {"down", SweepDirection::down}};
 
 /// `Row` is a TableReader (inline) or a CsvRowReader: both know keys, units and bounds.
 template <class Row>

@@ -4,17 +4,13 @@
 
 #include <cmath>
 
+#include "manoscope/core/frame_words.hpp"
+
 namespace manoscope::experiment {
 namespace {
 
-constexpr io::Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirection::plus_columns},
-                                                       {"-columns", FlowDirection::minus_columns},
-                                                       {"+rows", FlowDirection::plus_rows},
-                                                       {"-rows", FlowDirection::minus_rows}};
-constexpr io::Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
-                                           {"-height", Outward::minus_height}};
-constexpr io::Word<flow::InletProfile> kInletProfiles[] = {
-    {"developed", flow::InletProfile::developed}, {"uniform", flow::InletProfile::uniform}};
+constexpr Word<flow::InletProfile> kInletProfiles[] = {{"developed", flow::InletProfile::developed},
+                                                       {"uniform", flow::InletProfile::uniform}};
 
 constexpr io::Bounds kSpread{0.0, 1.0, false,
                              "The spread is a fraction of the way to the other profile: 0 claims "

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "manoscope/core/words.hpp"
 #include "manoscope/io/bounds.hpp"
 #include "manoscope/io/faults.hpp"
 #include "manoscope/io/toml_document.hpp"
@@ -14,13 +15,6 @@
 namespace manoscope::io {
 
 enum class Need { optional, required };
-
-/// A word of the file and the value it stands for.
-template <class E>
-struct Word {
-  const char* word;
-  E value;
-};
 
 /// Reads the keys of one TOML table, each with its type and bounds, and notes every fault.
 ///

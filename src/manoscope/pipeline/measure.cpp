@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/frame_words.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/parallel.hpp"
 #include "manoscope/core/provenance.hpp"
@@ -69,13 +70,12 @@ std::string settings_text(const MeasureOptions& options) {
 }
 
 std::string place_text(const ChannelFrame& frame) {
-  constexpr const char* kFlow[] = {"+columns", "-columns", "+rows", "-rows"};
   return fmt::format(
       "place: origin = ({} m, {} m), flow = {}, across {}, rotation = {} rad, "
       "outward = {}\n",
-      frame.origin_x.si(), frame.origin_y.si(), kFlow[static_cast<int>(frame.flow)],
+      frame.origin_x.si(), frame.origin_y.si(), word_of(kFlowDirections, frame.flow),
       frame.across_reversed ? "reversed" : "forward", frame.rotation.si(),
-      frame.outward == Outward::plus_height ? "+height" : "-height");
+      word_of(kOutwards, frame.outward));
 }
 
 void store_provenance(const Experiment& experiment, const ReducedExperiment& reduced,

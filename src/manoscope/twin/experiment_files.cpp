@@ -9,7 +9,9 @@
 
 #include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/frame_words.hpp"
 #include "manoscope/core/provenance.hpp"
+#include "manoscope/io/toml_edit.hpp"
 #include "manoscope/io/writer.hpp"
 #include "manoscope/twin/toml_text.hpp"
 
@@ -17,10 +19,9 @@ namespace manoscope::twin {
 namespace {
 
 namespace fs = std::filesystem;
+using io::toml_quoted;
 using toml_text::best;
-using toml_text::direction_text;
 using toml_text::in_unit;
-using toml_text::quoted;
 
 const char* const kStaging = ".manoscope-twin";
 const char* const kToml = "experiment.toml";
@@ -37,12 +38,11 @@ std::string channel_section(const Scenario& scenario, Length stated_height) {
   }
   text += fmt::format("origin = [{}, {}]\n", in_unit(frame.origin_x.in(mm), "mm"),
                       in_unit(frame.origin_y.in(mm), "mm"));
-  text += fmt::format("flow = \"{}\"\n", direction_text(frame.flow));
+  text += fmt::format("flow = \"{}\"\n", word_of(kFlowDirections, frame.flow));
   if (frame.rotation != Angle{}) {
     text += fmt::format("rotation = {}\n", in_unit(frame.rotation.in(deg), "deg"));
   }
-  text += fmt::format("outward = \"{}\"\n",
-                      frame.outward == Outward::plus_height ? "+height" : "-height");
+  text += fmt::format("outward = \"{}\"\n", word_of(kOutwards, frame.outward));
   return text;
 }
 
@@ -50,7 +50,7 @@ std::string wall_section(const Scenario& scenario) {
   const wall::ClampedWall& wall = scenario.wall;
   std::string text = "[wall]\n";
   if (!scenario.wall_material.empty()) {
-    text += fmt::format("material = {}\n", quoted(scenario.wall_material));
+    text += fmt::format("material = {}\n", toml_quoted(scenario.wall_material));
   }
   text += fmt::format("thickness = {}\n", best(wall.thickness));
   text += fmt::format("youngs_modulus = {}\n", best(wall.youngs_modulus));
@@ -213,11 +213,12 @@ std::string experiment_name(const Scenario& scenario, std::uint64_t seed) {
 std::string experiment_toml(const Scenario& scenario, const std::string& name,
                             Length stated_height) {
   std::string text = "manoscope = 1\n";
-  text += fmt::format("name = {}\n\n", quoted(name));
+  text += fmt::format("name = {}\n\n", toml_quoted(name));
   text += channel_section(scenario, stated_height) + "\n";
   text += wall_section(scenario) + "\n";
   text += "[fluid]\n";
-  if (!scenario.fluid_name.empty()) text += fmt::format("name = {}\n", quoted(scenario.fluid_name));
+  if (!scenario.fluid_name.empty())
+    text += fmt::format("name = {}\n", toml_quoted(scenario.fluid_name));
   text += fmt::format("viscosity = {}\n", in_unit(scenario.fluid.viscosity.in(mPa_s), "mPa s"));
   text += fmt::format("density = {}\n\n", in_unit(scenario.fluid.density.si(), "kg/m3"));
   text += instrument_section(scenario) + "\n";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/frame_words.hpp"
 #include "manoscope/core/suggest.hpp"
 #include "manoscope/io/table_reader.hpp"
 #include "manoscope/twin/hydraulic_resistance.hpp"
@@ -25,14 +26,8 @@ constexpr int kSchema = 1;
 constexpr io::Bounds kAny{-1e300, 1e300, false, "Give a finite value"};
 constexpr io::Bounds kNotNegative{0.0, 1e300, false, "Give zero or more"};
 
-constexpr io::Word<FlowDirection> kFlowDirections[] = {{"+columns", FlowDirection::plus_columns},
-                                                       {"-columns", FlowDirection::minus_columns},
-                                                       {"+rows", FlowDirection::plus_rows},
-                                                       {"-rows", FlowDirection::minus_rows}};
-constexpr io::Word<WallLaw> kWallLaws[] = {{"foppl_von_karman", WallLaw::foppl_von_karman},
-                                           {"tapered_membrane", WallLaw::tapered_membrane}};
-constexpr io::Word<Outward> kOutwards[] = {{"+height", Outward::plus_height},
-                                           {"-height", Outward::minus_height}};
+constexpr Word<WallLaw> kWallLaws[] = {{"foppl_von_karman", WallLaw::foppl_von_karman},
+                                       {"tapered_membrane", WallLaw::tapered_membrane}};
 
 template <class Q>
 Q required(TableReader& table, const char* key, const io::Bounds& bounds) {

@@ -5,19 +5,21 @@
 #include <sstream>
 #include <vector>
 
+#include "manoscope/core/frame_words.hpp"
+#include "manoscope/io/toml_edit.hpp"
 #include "manoscope/twin/toml_text.hpp"
 
 namespace manoscope::twin {
 namespace {
 
+using io::toml_quoted;
 using toml_text::best;
 using toml_text::in_unit;
-using toml_text::quoted;
 
 std::string text_of(double value) { return fmt::format("{:.10g}", value); }
 std::string text_of(int value) { return fmt::format("{}", value); }
 std::string text_of(bool value) { return value ? "true" : "false"; }
-std::string text_of(const std::string& value) { return quoted(value); }
+std::string text_of(const std::string& value) { return toml_quoted(value); }
 std::string text_of(Pressure value) { return best(value); }
 std::string text_of(Length value) { return value == Length{} ? in_unit(0.0, "um") : best(value); }
 std::string text_of(Angle value) { return in_unit(value.in(1e-3 * rad), "mrad"); }
@@ -47,9 +49,10 @@ std::string wall_section(const Scenario& scenario) {
   const wall::ClampedWall& wall = scenario.wall;
   const bool membrane = scenario.wall_law == WallLaw::tapered_membrane;
   std::string text = "[wall]\n";
-  if (!scenario.wall_material.empty()) text += line("material", quoted(scenario.wall_material));
+  if (!scenario.wall_material.empty())
+    text += line("material", toml_quoted(scenario.wall_material));
   text +=
-      line("law", quoted(membrane ? "tapered_membrane" : "foppl_von_karman")) +
+      line("law", toml_quoted(membrane ? "tapered_membrane" : "foppl_von_karman")) +
       line("thickness", best(wall.thickness)) + line("youngs_modulus", best(wall.youngs_modulus)) +
       line("poisson_ratio", text_of(wall.poisson_ratio)) + line("prestress", best(wall.prestress)) +
       line("shear_correction", text_of(wall.shear_correction)) +
@@ -62,7 +65,7 @@ std::string wall_section(const Scenario& scenario) {
 
 std::string fluid_section(const Scenario& scenario) {
   std::string text = "[fluid]\n";
-  if (!scenario.fluid_name.empty()) text += line("name", quoted(scenario.fluid_name));
+  if (!scenario.fluid_name.empty()) text += line("name", toml_quoted(scenario.fluid_name));
   return text + line("viscosity", in_unit(scenario.fluid.viscosity.in(mPa_s), "mPa s")) +
          line("density", in_unit(scenario.fluid.density.si(), "kg/m3"));
 }
@@ -105,8 +108,8 @@ std::string rigid_section(const Scenario& scenario) {
 std::string camera_section(const Scenario& scenario) {
   const InterferometerOptions& camera = scenario.camera;
   return "[camera]\n" + option_lines(camera) +
-         line("flow", quoted(toml_text::direction_text(camera.flow))) +
-         line("outward", quoted(camera.outward == Outward::plus_height ? "+height" : "-height"));
+         line("flow", toml_quoted(word_of(kFlowDirections, camera.flow))) +
+         line("outward", toml_quoted(word_of(kOutwards, camera.outward)));
 }
 
 }  // namespace
@@ -115,7 +118,7 @@ std::string scenario_toml(const Scenario& scenario, const std::string& comment) 
   std::string text;
   std::istringstream lines(comment);
   for (std::string one; std::getline(lines, one);) text += "# " + one + "\n";
-  text += "scenario = 1\n" + line("name", quoted(scenario.name)) + "\n";
+  text += "scenario = 1\n" + line("name", toml_quoted(scenario.name)) + "\n";
   text += channel_section(scenario) + "\n" + wall_section(scenario) + "\n";
   text += fluid_section(scenario) + "\n" + runs_sections(scenario) + rigid_section(scenario);
   text += "\n" + camera_section(scenario) + "\n[gauge]\n" + option_lines(scenario.gauge);

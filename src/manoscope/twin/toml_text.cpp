@@ -38,33 +38,4 @@ std::string best(Length length) {
   return in_best_unit(length.si(), {{1e-12, "pm"}, {1e-9, "nm"}, {1e-6, "um"}, {1e-3, "mm"}});
 }
 
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char letter : text) {
-    if (letter == '"' || letter == '\\') {
-      result += '\\';
-      result += letter;
-    } else if (static_cast<unsigned char>(letter) < 0x20) {
-      result += fmt::format("\\u{:04x}", static_cast<unsigned>(letter));
-    } else {
-      result += letter;
-    }
-  }
-  return result + '"';
-}
-
-const char* direction_text(FlowDirection flow) {
-  switch (flow) {
-    case FlowDirection::plus_columns:
-      return "+columns";
-    case FlowDirection::minus_columns:
-      return "-columns";
-    case FlowDirection::plus_rows:
-      return "+rows";
-    case FlowDirection::minus_rows:
-      return "-rows";
-  }
-  return "";
-}
-
 }  // namespace manoscope::twin::toml_text

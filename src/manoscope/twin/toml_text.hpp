@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "manoscope/core/frame.hpp"
 #include "manoscope/core/units.hpp"
 
 /// Values as the TOML files of this module write them.
@@ -13,9 +12,5 @@ std::string in_unit(double number, const char* unit);
 /// In the unit of Pa to GPa, or pm to mm, in which the number is below 1000.
 std::string best(Pressure pressure);
 std::string best(Length length);
-/// A TOML basic string.
-std::string quoted(const std::string& text);
-/// "+columns" and so on, without quotes.
-const char* direction_text(FlowDirection flow);
 
 }  // namespace manoscope::twin::toml_text
