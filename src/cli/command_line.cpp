@@ -13,6 +13,7 @@
 #include <string>
 #include <string_view>
 
+#include "manoscope/core/child_process.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/provenance.hpp"
 #include "manoscope/core/suggest.hpp"
@@ -24,9 +25,10 @@ namespace {
 
 volatile std::sig_atomic_t stop_signal = 0;
 
-/// A first Ctrl-C stops the work at its next checkpoint, a second ends the program at once.
+/// A first Ctrl-C, or the end of the terminal, stops the work at its next checkpoint; a second
+/// Ctrl-C ends the program at once. A terminal that ends tells so more than once.
 extern "C" void on_stop(int signal) {
-  if (stop_signal == 0) {
+  if (stop_signal == 0 || signal == SIGHUP) {
     stop_signal = signal;
     return;
   }
@@ -140,6 +142,16 @@ void Command::described(const OptionInfo& info, const std::string& group,
       ->group(group);
 }
 
+std::function<std::vector<std::string>()> Command::given() const {
+  return [app = impl_->app] {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app->get_options()) {
+      if (option->count() > 0) names.push_back(option->get_single_name());
+    }
+    return names;
+  };
+}
+
 void Command::action(std::function<void(const Context&)> run) {
   impl_->app->callback([run = std::move(run), context = impl_->context] { run(*context); });
 }
@@ -185,6 +197,9 @@ Command Program::command(const std::string& name, const std::string& help) {
 int Program::run(int argc, char** argv) {
   std::signal(SIGINT, on_stop);
   std::signal(SIGTERM, on_stop);
+  // The terminal was closed; not where the user said to go on without it (nohup).
+  if (std::signal(SIGHUP, on_stop) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  end_with_parent();
   std::signal(SIGPIPE, SIG_IGN);
   Impl& impl = *impl_;
   impl.context.monitor.stop_requested = [] { return stop_signal != 0; };

@@ -57,6 +57,8 @@ class Command {
       });
     }
   }
+  /// Names without dashes of the options that the command line gives; to be asked in the action.
+  std::function<std::vector<std::string>()> given() const;
   /// What to do once the words are understood.
   void action(std::function<void(const Context&)> run);
 

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <system_error>
 #include <thread>
@@ -124,6 +126,7 @@ std::optional<ChildProcess> ChildProcess::start(const std::vector<std::string>& 
   child.id_ = id;
   child.output_ = ends[0];
   child.stop_requested_ = options.stop_requested;
+  child.grace_seconds_ = options.grace_seconds;
   child.deadline_ms_ = now_ms() + static_cast<long long>(options.wall_seconds * 1e3);
   return child;
 }
@@ -132,6 +135,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
     : id_(std::exchange(other.id_, -1)),
       output_(std::exchange(other.output_, -1)),
       deadline_ms_(other.deadline_ms_),
+      grace_seconds_(other.grace_seconds_),
       stop_requested_(std::move(other.stop_requested_)),
       timed_out_(other.timed_out_),
       ended_(other.ended_),
@@ -140,7 +144,7 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (output_ >= 0) ::close(output_);
   if (id_ > 0 && !ended_) {
-    ::kill(-id_, SIGKILL);
+    kill();
     while (::waitpid(id_, nullptr, 0) < 0 && errno == EINTR) {
     }
   }
@@ -185,30 +189,69 @@ std::string ChildProcess::read_all(std::size_t most) {
   return bytes;
 }
 
-void ChildProcess::kill() {
-  if (id_ > 0 && !ended_) ::kill(-id_, SIGKILL);
+bool ChildProcess::has_ended() const {
+  siginfo_t found{};  // its number stays taken till wait(): the group's is no stranger's
+  return ::waitid(P_PID, static_cast<id_t>(id_), &found, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         found.si_pid == id_;
 }
 
-ChildEnd ChildProcess::wait() {
-  if (ended_) return end_;
+void ChildProcess::kill() {
+  if (id_ <= 0 || ended_) return;
+  if (grace_seconds_ > 0.0) {
+    constexpr auto kPause = std::chrono::milliseconds(5);
+    const long long last = now_ms() + static_cast<long long>(grace_seconds_ * 1e3);
+    ::kill(-id_, SIGTERM);
+    while (!has_ended() && now_ms() < last) std::this_thread::sleep_for(kPause);
+  }
+  ::kill(-id_, SIGKILL);
+}
+
+void ChildProcess::await_end() {
   // The end of the output is the end of nearly every child: polling is for those that linger.
   constexpr auto kPause = std::chrono::milliseconds(1);
-  int status = 0;
-  while (true) {
-    const pid_t found = ::waitpid(id_, &status, timed_out_ ? 0 : WNOHANG);
-    if (found == id_) break;
-    if (found < 0 && errno != EINTR) fail("wait", errno);
+  while (!ended_) {
+    siginfo_t found{};
+    const int kind = WEXITED | WNOWAIT | (timed_out_ ? 0 : WNOHANG);
+    if (::waitid(P_PID, static_cast<id_t>(id_), &found, kind) != 0) {
+      if (errno != EINTR) fail("wait", errno);
+    } else if (found.si_pid == id_) {
+      return;
+    }
     if (!timed_out_ && milliseconds_left() == 0) {
       timed_out_ = true;
       kill();
     }
-    if (found == 0) std::this_thread::sleep_for(kPause);
+    std::this_thread::sleep_for(kPause);
+  }
+}
+
+ChildEnd ChildProcess::wait() {
+  if (ended_) return end_;
+  await_end();
+  int status = 0;
+  while (::waitpid(id_, &status, 0) < 0) {
+    if (errno != EINTR) fail("wait", errno);
   }
   ended_ = true;
   end_.timed_out = timed_out_;
   if (WIFEXITED(status)) end_.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) end_.signal = WTERMSIG(status);
   return end_;
+}
+
+namespace {
+constexpr const char* kParent = "MANOSCOPE_PARENT";
+}
+
+std::string variable_of_parent() { return std::string(kParent) + "=" + std::to_string(::getpid()); }
+
+void end_with_parent() {
+  const char* parent = std::getenv(kParent);
+  if (parent == nullptr) return;
+  const std::string wanted = parent;
+  ::unsetenv(kParent);  // it is meant for this program, not for those that this one starts
+  ::prctl(PR_SET_PDEATHSIG, SIGINT);
+  if (std::to_string(::getppid()) != wanted) std::raise(SIGINT);  // gone already
 }
 
 std::optional<std::string> find_program(const std::string& name) {

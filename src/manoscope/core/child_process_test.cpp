@@ -57,6 +57,24 @@ TEST(ChildProcess, IsStoppedWithAllItsChildrenWhenItsTimeIsUp) {
   EXPECT_LT(seconds_since(start), 10.0);
 }
 
+TEST(ChildProcess, MayTidyUpBeforeItIsStopped) {
+  ChildProcess::Options options;
+  options.grace_seconds = 30.0;
+  auto tidy = shell("trap 'exit 7' TERM; echo ready; while :; do sleep 0.01; done", options);
+  char line[6];
+  ASSERT_EQ(tidy->read(line, sizeof(line)), sizeof(line));
+  const auto start = Clock::now();
+  tidy->kill();
+  EXPECT_EQ(tidy->wait().exit_code, 7);
+  EXPECT_LT(seconds_since(start), 20.0);
+
+  options.grace_seconds = 0.1;
+  auto stubborn = shell("trap '' TERM; echo ready; while :; do sleep 0.01; done", options);
+  ASSERT_EQ(stubborn->read(line, sizeof(line)), sizeof(line));
+  stubborn->kill();
+  EXPECT_EQ(stubborn->wait().signal, SIGKILL);
+}
+
 TEST(ChildProcess, ThatClosesItsOutputAndLingersIsStoppedToo) {
   ChildProcess::Options options;
   options.wall_seconds = 0.2;
