@@ -172,7 +172,7 @@ Array1 side_wall_pressure(const FlowSetup& setup, FlowRate flow_rate, const Arra
 }
 
 double side_wall_error(const FlowSetup& setup, FlowRate flow_rate, const Array1& zeta) {
-  constexpr double kSlope = 0.02, kLeast = 0.005, kMost = 0.1;
+  constexpr double kSlope = 0.03, kLeast = 0.005, kMost = 0.15;
   return std::clamp(kSlope * flow::reduced_reynolds(setup.channel, setup.fluid, flow_rate, zeta),
                     kLeast, kMost);
 }

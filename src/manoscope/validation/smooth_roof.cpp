@@ -80,6 +80,24 @@ numerics::SmoothingSpline spline_of(const Departures& found, Index k, double win
           std::max(2.0 * channel.height.si(), 2.0 * window)};
 }
 
+/// (n_sections) By how much the splines' freedom lowers the mean of the squared rests of each
+/// stretch over the noise: 2 S_jj - sum over i of S_ji^2 of each, S its weights over the stretch.
+/// For departures that are orthogonal over the cells and noise that is the same in all stretches.
+Array1 freedom_of(const std::vector<numerics::SmoothingSpline>& splines, const Departures& found,
+                  const Array1& low, const Array1& middle, const Array1& high) {
+  Array1 freedom = Array1::Zero(middle.size());
+  for (const numerics::SmoothingSpline& spline : splines) {
+    const Matrix weights = 0.5 * (spline.weights(low) + spline.weights(high));
+    Index i = 1;  // the first datum is the clamped end
+    for (const double x : found.x) {
+      const auto j = std::find(middle.begin(), middle.end(), x) - middle.begin();
+      freedom[j] +=
+          2.0 * weights(j, i++) - weights.row(j).segment(1, weights.cols() - 2).squaredNorm();
+    }
+  }
+  return freedom;
+}
+
 }  // namespace
 
 std::optional<SmoothRoof> SmoothRoof::through(const SmoothShape& along,
@@ -97,8 +115,10 @@ std::optional<SmoothRoof> SmoothRoof::through(const SmoothShape& along,
   for (Index k = 0; k < roof.modes_.size(); ++k) {
     roof.splines_.push_back(spline_of(found, k, roof.window_, channel));
   }
-  roof.middle_ = roof.judge(sections, means, false);
-  roof.ends_ = roof.judge(sections, means, true);
+  const auto [low, high] = roof.within_stretches(sections.x);
+  const Array1 freedom = freedom_of(roof.splines_, found, low, sections.x, high);
+  roof.middle_ = roof.judge(sections, means, freedom, false);
+  roof.ends_ = roof.judge(sections, means, freedom, true);
   return roof;
 }
 
@@ -107,14 +127,17 @@ bool SmoothRoof::near_end(double x) const {
   return x < reach || x > channel_.length.si() - reach;
 }
 
-SmoothRoof::Judged SmoothRoof::judge(const CrossSections& sections, const Matrix& means,
-                                     bool ends) const {
+std::pair<Array1, Array1> SmoothRoof::within_stretches(const Array1& x) const {
   const double reach = window_ / (2.0 * std::numbers::sqrt3);
-  const double length = channel_.length.si();
-  const Matrix smooth = 0.5 * (departures((sections.x - reach).max(0.0)) +
-                               departures((sections.x + reach).min(length)));
-  double taken = 0.0, noise = 0.0, misfit = 0.0;
-  Index n_levels = 0, n_cells = 0;
+  return {(x - reach).max(0.0), (x + reach).min(channel_.length.si())};
+}
+
+SmoothRoof::Judged SmoothRoof::judge(const CrossSections& sections, const Matrix& means,
+                                     const Array1& freedom, bool ends) const {
+  const auto [low, high] = within_stretches(sections.x);
+  const Matrix smooth = 0.5 * (departures(low) + departures(high));
+  double taken = 0.0, noise = 0.0, misfit = 0.0, fitted = 0.0;
+  Index n_cells = 0;
   for (Index j = 0; j < sections.x.size(); ++j) {
     if (near_end(sections.x[j]) != ends) continue;
     Eigen::VectorXd weight(means.rows());
@@ -124,7 +147,7 @@ SmoothRoof::Judged SmoothRoof::judge(const CrossSections& sections, const Matrix
     const Eigen::VectorXd g = weight.cwiseProduct(means.col(0));
     if (!(g.squaredNorm() > 0.0)) continue;
     const double level = g.dot(weight.cwiseProduct(rest)) / g.squaredNorm();
-    ++n_levels;
+    fitted += 1.0 + freedom[j];
     for (Index b = 0; b < weight.size(); ++b) {
       if (weight[b] == 0.0) continue;
       const double off = rest[b] - level * means(b, 0);
@@ -134,10 +157,9 @@ SmoothRoof::Judged SmoothRoof::judge(const CrossSections& sections, const Matrix
       ++n_cells;
     }
   }
-  if (n_cells <= n_levels) return {};
   const auto n = static_cast<double>(n_cells);
-  return {std::sqrt(taken / n), std::sqrt(noise / n),
-          std::sqrt(misfit / static_cast<double>(n_cells - n_levels))};
+  if (n <= fitted) return {};
+  return {std::sqrt(taken / n), std::sqrt(noise / n), std::sqrt(misfit / (n - fitted))};
 }
 
 Matrix SmoothRoof::departures(const Array1& x) const {

@@ -60,8 +60,8 @@ class SmoothRoof {
   // fraction of w/pi and neither cells nor departures tell them all.
   Length taken() const { return Length::from_si(middle_.taken); }  ///< of what was taken away
   Length noise() const { return Length::from_si(middle_.noise); }  ///< of the stated noise
-  /// Of both by cell, with the degrees of freedom of the levels taken off: 1 where the departures
-  /// suffice.
+  /// Of both by cell, with the degrees of freedom of levels and splines taken off: 1 where the
+  /// departures suffice.
   double misfit() const { return middle_.misfit; }
   Length end_taken() const { return Length::from_si(ends_.taken); }
 
@@ -80,7 +80,10 @@ class SmoothRoof {
     double misfit = 0.0;
   };
   bool near_end(double x) const;
-  Judged judge(const CrossSections& sections, const Matrix& means, bool ends) const;
+  /// Two places in each stretch whose mean is that over it (Gauss).
+  std::pair<Array1, Array1> within_stretches(const Array1& x) const;
+  Judged judge(const CrossSections& sections, const Matrix& means, const Array1& freedom,
+               bool ends) const;
   Length mean_square_root(Index first, Index n, bool of_standard) const;
 
   SmoothShape along_;

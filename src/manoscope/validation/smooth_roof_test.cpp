@@ -64,14 +64,18 @@ TEST_P(SmoothRoofOf, RecoversTheWallWithinItsStatedUncertainty) {
   RecordProperty("pull", std::to_string(std::sqrt(pull)));
   RecordProperty("error, nm", std::to_string(1e9 * std::sqrt(error_square)));
   RecordProperty("misfit", std::to_string(misfit));
-  // Root mean square over x and z; a bar of noise alone would have 1.
-  EXPECT_LT(std::sqrt(pull), 1.3);
-  EXPECT_GT(std::sqrt(pull), 0.4);
+  RecordProperty("taken", std::to_string(taken));
+  // Root mean square over x and z: 1 within 5 %, for 11 departures have some ten independent pieces
+  // each in every trial; of layers at sides and ends, which they do not hold, up to 0.15 more.
+  EXPECT_LT(std::sqrt(pull), 1.25);
+  EXPECT_GT(std::sqrt(pull), 0.85);
   // No farther from the wall than a single cell, end layers included, which are 0.5 mm long.
   EXPECT_LT(std::sqrt(error_square), 1.2 * kNoise);
-  // About 1/(2 * 1100 cells)^(1/2) = 2 % for noise alone, and no more taken away.
+  // No more taken away than the noise, which is told to 1/(2 * 1100 cells)^(1/2) = 2 % a trial.
   EXPECT_LT(taken, 1.04);
-  EXPECT_LT(misfit, 1.06);
+  // Of some 800 degrees of freedom that are left: 1 within three times 1.3 %, and what the layers
+  // leave. Without those of the splines taken off it would be 0.88 to 0.97.
+  EXPECT_NEAR(misfit, 1.01, 0.05);
 }
 
 TEST_P(SmoothRoofOf, KeepsTheWidthAverageAndTheClampedSides) {
