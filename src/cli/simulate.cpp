@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "manoscope/core/atomic_file.hpp"
@@ -29,11 +32,36 @@ struct Args {
   fs::path shape, out, csv;
   SolverRun solver;
   bool parasitic = false;
+  std::function<std::vector<std::string>()> given;  ///< options on the command line
   navier_stokes::SimulationOptions options;
   pipeline::MeasureOptions measure;
 };
 
+/// Refuses options that are given and would do nothing.
+void refuse(const Args& args, const std::vector<std::string>& names, const char* found,
+            const char* mend) {
+  for (const std::string& given : args.given()) {
+    if (std::find(names.begin(), names.end(), given) == names.end()) continue;
+    throw InputError("--" + given, found, mend);
+  }
+}
+
+/// Refuses the options of a measurement.
+void refuse_measuring(const Args& args, const char* found) {
+  std::vector<std::string> names;
+  for (const OptionInfo& option : list_options(args.measure)) names.push_back(option.name);
+  refuse(args, names, found, "Leave it out");
+}
+
+/// Before hours of work, not behind them: files that cannot be written.
+void check_targets(const std::vector<fs::path>& files) {
+  for (const fs::path& file : files) {
+    if (!file.empty()) const AtomicFile probe(file);
+  }
+}
+
 void simulate_shape(Args args, const Context& context) {
+  refuse_measuring(args, "is for measured shapes, and there is a --shape");
   if (!args.runs.empty()) {
     throw InputError("--run", "belongs to an experiment, and there is a --shape",
                      "Give either an experiment and --run, or --shape");
@@ -43,24 +71,22 @@ void simulate_shape(Args args, const Context& context) {
                      "Choose developed or uniform");
   }
   args.options.validate();
+  if (!args.csv.empty() && !args.out.empty()) {
+    throw InputError("--csv", "and -o name the same table", "Keep one of them");
+  }
   if (!args.csv.empty()) args.out = args.csv;
+  check_targets({args.out, args.solver.vtu});
   const std::string answer = ask_solver(args.shape, args.options, args.solver, context.monitor);
   if (!args.out.empty()) write_file_atomically(args.out, simulation_table(answer));
   print(context.json ? answer : simulation_text(answer, context.quiet));
-  if (const std::string doubt = simulation_doubt(answer); !doubt.empty()) remark(context, doubt);
+  for (const std::string& doubt : simulation_doubts(answer)) remark(context, doubt);
   if (!args.out.empty()) remark(context, fmt::format("p(x) in {}", args.out.string()));
 }
 
 /// Refuses options that the experiment tells itself.
-void leave_to_experiment(const navier_stokes::SimulationOptions& options) {
-  const auto given = list_options(options),
-             unset = list_options(navier_stokes::SimulationOptions{});
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    for (const char* name : {"height", "width", "flow-rate", "viscosity", "density"}) {
-      if (given[i].name != name || given[i].value == unset[i].value) continue;
-      throw InputError(fmt::format("--{}", name), "is told by the experiment", "Leave it out");
-    }
-  }
+void leave_to_experiment(const Args& args) {
+  refuse(args, {"height", "width", "flow-rate", "viscosity", "density"},
+         "is told by the experiment", "Leave it out");
 }
 
 pipeline::RoofChoice roof_choice(const navier_stokes::SimulationOptions& options) {
@@ -81,8 +107,9 @@ fs::path file_of_run(const fs::path& file, const std::string& run, bool one) {
 }
 
 void simulate_experiment(Args args, const Context& context) {
-  leave_to_experiment(args.options);
+  leave_to_experiment(args);
   args.options.validate_solution();
+  check_targets({args.csv, args.solver.vtu});
   const pipeline::RoofChoice roof = roof_choice(args.options);
   if (args.runs.empty()) {
     throw InputError("--run", "is not given", "Name a run, as --run Q70, or --run all");
@@ -130,12 +157,16 @@ void simulate_experiment(Args args, const Context& context) {
 }
 
 void simulate_parasitic(const Args& args, const Context& context) {
-  leave_to_experiment(args.options);
+  leave_to_experiment(args);
+  refuse(args, {"vtu", "checkpoint"}, "is for flows in the channel",
+         "Leave it out, or run manoscope-navier-stokes --passage with it");
+  refuse(args,
+         {"dim", "cells-along", "cells-up", "cells-across", "inlet", "lead-in", "lead-out",
+          "lead-in-slips", "stations", "wall-shape"},
+         "is for flows in the channel", "Leave it out");
+  refuse_measuring(args, "is for measured shapes, which no passage has");
   args.options.validate_solution();
-  if (!args.solver.vtu.empty()) {
-    throw InputError("--vtu", "is for flows in the channel",
-                     "Run manoscope-navier-stokes --passage with --vtu for a flow in a passage");
-  }
+  check_targets({args.csv});
   require_solver();
   const auto experiment = experiment::read_experiment(fs::path(args.experiment));
   if (!args.out.empty()) results::check_result_of(args.out, experiment.text);
@@ -191,6 +222,7 @@ void add_simulate(Program& program) {
   command.options(args->solver, "Simulation");
   command.options(args->options, "Simulation");
   command.options(args->measure, "Measurement of the shape");
+  args->given = command.given();
   command.action([args](const Context& context) {
     if (args->experiment.empty() == args->shape.empty()) {
       throw InputError("simulate",

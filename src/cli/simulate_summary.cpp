@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
-#include <vector>
+#include <sstream>
 
 #include "manoscope/flow/laminar.hpp"
 #include "text_table.hpp"
@@ -19,13 +20,28 @@ std::vector<double> list(const json& object, const char* name) {
   return object.at(name).get<std::vector<double>>();
 }
 
+/// What the first line with an object of that member has there; null if none has.
+json line_with(const char* name, const std::string& answer) {
+  std::istringstream lines(answer);
+  for (std::string line; std::getline(lines, line);) {
+    const json object = parsed(line);
+    if (object.is_object() && object.contains(name)) return object[name];
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::optional<InputError> simulation_fault(const std::string& answer) {
-  const json object = parsed(answer);
-  if (!object.is_object() || !object.contains("error")) return std::nullopt;
-  const json& error = object["error"];
+  const json error = line_with("error", answer);
+  if (!error.is_object()) return std::nullopt;
   return InputError(error.value("where", ""), error.value("found", ""), error.value("mend", ""));
+}
+
+std::optional<std::string> solver_fault(const std::string& answer) {
+  const json fault = line_with("fault", answer);
+  if (!fault.is_string()) return std::nullopt;
+  return fault.get<std::string>();
 }
 
 std::string simulation_text(const std::string& answer, bool in_short) {
@@ -61,21 +77,24 @@ std::string simulation_text(const std::string& answer, bool in_short) {
   return text + text_table(rows);
 }
 
-std::string simulation_doubt(const std::string& answer) {
+std::vector<std::string> simulation_doubts(const std::string& answer) {
   const json object = parsed(answer);
+  std::vector<std::string> doubts;
   if (const double reynolds = object.at("reynolds").get<double>();
       reynolds > flow::kLargestLaminarReynolds) {
-    return fmt::format(
+    doubts.push_back(fmt::format(
         "Re = {:.0f} on the hydraulic diameter, where ducts may turn turbulent: a steady laminar "
-        "flow "
-        "was solved",
-        reynolds);
+        "flow was solved",
+        reynolds));
   }
-  if (object.at("converged").get<bool>()) return "";
-  return fmt::format(
-      "The drop is uncertain by {:.2g} % for want of cells: take more (--cells-along, --cells-up)",
-      100.0 * object.at("drop_numerical_uncertainty_Pa").get<double>() /
-          object.at("drop_Pa").get<double>());
+  if (!object.at("converged").get<bool>()) {
+    doubts.push_back(fmt::format(
+        "The drop is uncertain by {:.2g} % for want of cells: take more (--cells-along, "
+        "--cells-up)",
+        100.0 * std::abs(object.at("drop_numerical_uncertainty_Pa").get<double>() /
+                         object.at("drop_Pa").get<double>())));
+  }
+  return doubts;
 }
 
 std::string simulation_table(const std::string& answer) {

@@ -49,17 +49,23 @@ class ShapeFile {
     }
     ::close(file);
     path_ = name;
-    write_file_atomically(path_, flow.z.size() > 0 ? map_text(flow) : profile_text(flow));
+    try {
+      write_file_atomically(path_, flow.z.size() > 0 ? map_text(flow) : profile_text(flow));
+    } catch (...) {
+      remove();
+      throw;
+    }
   }
-  ~ShapeFile() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
-  }
+  ~ShapeFile() { remove(); }
   ShapeFile(const ShapeFile&) = delete;
   ShapeFile& operator=(const ShapeFile&) = delete;
   const fs::path& path() const { return path_; }
 
  private:
+  void remove() const {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
   static std::string profile_text(const pipeline::GivenFlow& flow) {
     std::string text = "x [m],zeta [m]\n";
     for (Index i = 0; i < flow.x.size(); ++i) {
@@ -115,7 +121,6 @@ void add_words(const Options& options, std::vector<std::string>& words) {
   }
 }
 
-/// What the program answers to a command line.
 /// The words that start the solver, without its options.
 std::vector<std::string> start_of(const SolverRun& run) {
   constexpr int kMostProcesses = 100000;
@@ -144,6 +149,7 @@ void add_files(const SolverRun& run, std::vector<std::string>& words) {
   }
 }
 
+/// What the program answers to a command line.
 std::string answer_of(const std::vector<std::string>& words, const Monitor& monitor) {
   constexpr double kLongest = 30.0 * 86400.0;              // s: whoever waits stops it with Ctrl-C
   constexpr std::size_t kLargest = std::size_t{1} << 30U;  // bytes
@@ -152,6 +158,7 @@ std::string answer_of(const std::vector<std::string>& words, const Monitor& moni
   // One thread: the sparse solver's BLAS would otherwise take all there are, for little.
   started.environment = {"OMP_NUM_THREADS=1"};
   started.stop_requested = monitor.stop_requested;
+  started.grace_seconds = 10.0;  // mpirun ends its processes and removes their files
   auto solver = ChildProcess::start(words, started);
   if (!solver) throw InputError(words.front(), "cannot be started", "Check its permissions");
   std::string answer = solver->read_all(kLargest);
@@ -159,6 +166,9 @@ std::string answer_of(const std::vector<std::string>& words, const Monitor& moni
   monitor.checkpoint();
   if (const auto fault = simulation_fault(answer)) throw InputError(*fault);
   if (end.succeeded()) return answer;
+  if (const auto fault = solver_fault(answer)) {
+    throw InternalError(fmt::format("{}: {}", kProgram, *fault));
+  }
   constexpr int kKilledUnderMpirun = 128 + SIGKILL;
   throw InternalError(
       end.signal == SIGKILL || end.exit_code == kKilledUnderMpirun

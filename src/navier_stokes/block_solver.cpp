@@ -5,7 +5,6 @@
 namespace manoscope::navier_stokes {
 namespace {
 
-/// How each part is solved, in PETSc's words.
 /// Newton's iteration squares what is left of its step: far less than the step needs no care.
 constexpr double kTolerance = 1e-6;
 
@@ -69,9 +68,10 @@ void BlockSolver::set_pressure_operators(Mat mass, Mat stiffness, Mat transport,
   if (between_ == nullptr) check_petsc(MatCreateVecs(mass_, &between_, &mass_part_));
 }
 
-void BlockSolver::prepare(Mat matrix, bool) {
+bool BlockSolver::prepare(Mat matrix, bool again) {
+  if (again) return false;  // it knows one way
   check_petsc(KSPSetOperators(ksp(), matrix, matrix));
-  if (is_ready_) return;
+  if (is_ready_) return true;
   is_ready_ = true;
   check_petsc(KSPSetOptionsPrefix(ksp(), "flow_"));
   PC pc = nullptr;
@@ -91,18 +91,21 @@ void BlockSolver::prepare(Mat matrix, bool) {
   check_petsc(PCShellSetContext(schur, this));
   check_petsc(PCShellSetApply(schur, apply_schur));
   check_petsc(PetscFree(parts));
+  return true;
 }
 
 PetscErrorCode BlockSolver::apply_schur(PC pc, Vec right, Vec result) {
+  // PETSc calls this: a fault goes back as a number, for no exception crosses its frames.
   void* context = nullptr;
-  check_petsc(PCShellGetContext(pc, &context));
+  PetscErrorCode code = PCShellGetContext(pc, &context);
+  if (code != 0) return code;
   auto& self = *static_cast<BlockSolver*>(context);
   // -(1 + gamma + K^-1 T) M^-1
-  check_petsc(KSPSolve(self.mass_solver_, right, self.mass_part_));
-  check_petsc(MatMult(self.transport_, self.mass_part_, self.between_));
-  check_petsc(KSPSolve(self.stiffness_solver_, self.between_, result));
-  check_petsc(VecAXPBY(result, -1.0 - self.grad_div_, -1.0, self.mass_part_));
-  return 0;
+  code = KSPSolve(self.mass_solver_, right, self.mass_part_);
+  if (code == 0) code = MatMult(self.transport_, self.mass_part_, self.between_);
+  if (code == 0) code = KSPSolve(self.stiffness_solver_, self.between_, result);
+  if (code == 0) code = VecAXPBY(result, -1.0 - self.grad_div_, -1.0, self.mass_part_);
+  return code;
 }
 
 }  // namespace manoscope::navier_stokes

@@ -27,7 +27,7 @@ class BlockSolver final : public LinearSolver {
   void set_pressure_operators(Mat mass, Mat stiffness, Mat transport, double grad_div);
 
  private:
-  void prepare(Mat matrix, bool again) override;
+  bool prepare(Mat matrix, bool again) override;
   static PetscErrorCode apply_schur(PC pc, Vec right, Vec result);
 
   IS velocity_ = nullptr, pressure_ = nullptr;

@@ -147,28 +147,31 @@ Difference recorded(const std::string& name, double reynolds, const Difference& 
   return found;
 }
 
-TEST_F(CavityFlow, IsThatOfIndependentSolutionsAndOfGhiaWithinItsScatter) {
+TEST_F(CavityFlow, IsThatOfIndependentSolutions) {
   struct Case {
     double reynolds;
     Lines independent, ghia;
-    Difference scatter;  ///< of Ghia's tables, of second order, about independent solutions
   };
-  std::vector<Case> cases = {
-      {100.0, shared_lines("cavity_ours", 1), shared_lines("ghia", 1), {0.0050, 0.0092}},
-      {400.0, shared_lines("cavity_ours", 2), shared_lines("ghia", 2), {0.0028, 0.0062}},
-      {1000.0, kBotella1000, kGhia1000, {0.0063, 0.0185}}};
+  std::vector<Case> cases = {{100.0, shared_lines("cavity_ours", 1), shared_lines("ghia", 1)},
+                             {400.0, shared_lines("cavity_ours", 2), shared_lines("ghia", 2)},
+                             {1000.0, kBotella1000, kGhia1000}};
   // A misprint: the neighbours are -0.228 and -0.450, and the independent solution has -0.390.
   std::erase_if(cases[1].ghia.v, [](const auto& row) { return row[0] == 0.9063; });
-  for (const auto& [reynolds, independent, ghia, scatter] : cases) {
-    if (independent.u.empty() || ghia.u.empty()) continue;  // no shared data
+  std::string missing;
+  for (const auto& [reynolds, independent, ghia] : cases) {
+    if (independent.u.empty() || ghia.u.empty()) {
+      missing += fmt::format(" {:g}", reynolds);
+      continue;
+    }
     const FlowSolver<2> solver = cavity(reynolds);
     const auto ours = recorded("independent", reynolds, largest_difference(solver, independent));
     EXPECT_LT(ours.u, kOurs) << reynolds;
     EXPECT_LT(ours.v, kOurs) << reynolds;
-    const auto theirs = recorded("Ghia", reynolds, largest_difference(solver, ghia));
-    EXPECT_LT(theirs.u, scatter.u + kOurs) << reynolds;
-    EXPECT_LT(theirs.v, scatter.v + kOurs) << reynolds;
+    // For docs/simulation.md. Ghia's tables, of second order, are fifty times as far off as kOurs:
+    // they tell nothing beside the others.
+    recorded("Ghia", reynolds, largest_difference(solver, ghia));
   }
+  if (!missing.empty()) GTEST_SKIP() << "no shared solutions at Re =" << missing;
 }
 
 }  // namespace

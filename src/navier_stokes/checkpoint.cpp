@@ -142,12 +142,14 @@ class NodePlanes {
   std::vector<double> values_;
 };
 
-/// A file that all processes share. Faults are told after all have come to the same place.
+/// A file that all processes share: each makes every call, whatever became of its own before, and
+/// good() tells once all have come to the same place.
 class SharedFile {
  public:
-  SharedFile(MPI_Comm comm, const fs::path& path, int mode) : path_(path) {
-    good_ = MPI_File_open(comm, path.c_str(), mode, MPI_INFO_NULL, &file_) == MPI_SUCCESS;
-    opened_ = good_;
+  SharedFile(const Processes& processes, const fs::path& path, int mode) : processes_(processes) {
+    good_ =
+        MPI_File_open(processes.comm(), path.c_str(), mode, MPI_INFO_NULL, &file_) == MPI_SUCCESS;
+    opened_ = good();
   }
   ~SharedFile() {
     if (opened_) MPI_File_close(&file_);
@@ -155,27 +157,41 @@ class SharedFile {
   SharedFile(const SharedFile&) = delete;
   SharedFile& operator=(const SharedFile&) = delete;
 
-  bool good() const { return good_; }
+  /// Whether all went well on all processes.
+  bool good() const { return all(good_); }
+  /// Whether something is so on all processes.
+  bool all(bool here) const { return processes_.largest(here ? 0.0 : 1.0) == 0.0; }
+
   void write(std::size_t offset, const void* data, std::size_t size) {
+    if (!opened_) return;
     MPI_Status status;
-    good_ = good_ &&
-            MPI_File_write_at_all(file_, static_cast<MPI_Offset>(offset), data,
-                                  static_cast<int>(size), MPI_BYTE, &status) == MPI_SUCCESS &&
-            count(status) == size;
+    const int code = MPI_File_write_at_all(file_, static_cast<MPI_Offset>(offset), data,
+                                           static_cast<int>(size), MPI_BYTE, &status);
+    good_ = code == MPI_SUCCESS && count(status) == size && good_;
   }
   void read(std::size_t offset, void* data, std::size_t size) {
+    if (!opened_) return;
     MPI_Status status;
-    good_ = good_ &&
-            MPI_File_read_at_all(file_, static_cast<MPI_Offset>(offset), data,
-                                 static_cast<int>(size), MPI_BYTE, &status) == MPI_SUCCESS &&
-            count(status) == size;
+    const int code = MPI_File_read_at_all(file_, static_cast<MPI_Offset>(offset), data,
+                                          static_cast<int>(size), MPI_BYTE, &status);
+    good_ = code == MPI_SUCCESS && count(status) == size && good_;
   }
   std::size_t size() const {
     MPI_Offset bytes = 0;
-    if (good_) MPI_File_get_size(file_, &bytes);
+    if (opened_) MPI_File_get_size(file_, &bytes);
     return static_cast<std::size_t>(bytes);
   }
-  void flush() { good_ = good_ && MPI_File_sync(file_) == MPI_SUCCESS; }
+  /// Cuts off what another run left behind.
+  void resize(std::size_t size) {
+    if (!opened_) return;
+    const int code = MPI_File_set_size(file_, static_cast<MPI_Offset>(size));
+    good_ = code == MPI_SUCCESS && good_;
+  }
+  void flush() {
+    if (!opened_) return;
+    const int code = MPI_File_sync(file_);
+    good_ = code == MPI_SUCCESS && good_;
+  }
 
  private:
   static std::size_t count(const MPI_Status& status) {
@@ -184,7 +200,7 @@ class SharedFile {
     return static_cast<std::size_t>(n);
   }
 
-  fs::path path_;
+  const Processes& processes_;
   MPI_File file_ = MPI_FILE_NULL;
   bool good_ = false, opened_ = false;
 };
@@ -193,6 +209,12 @@ template <int dim>
 std::array<NodePlanes<dim>, 2> fields(const typename FlowSolver<dim>::Discrete& discrete) {
   const int order = discrete.problem.order;
   return {NodePlanes<dim>(discrete, order, dim), NodePlanes<dim>(discrete, order - 1, 1)};
+}
+
+/// Of a whole file, bytes.
+template <int dim>
+std::size_t size_of(const std::array<NodePlanes<dim>, 2>& parts) {
+  return sizeof(Header) + (parts[0].size() + parts[1].size()) * sizeof(double);
 }
 
 }  // namespace
@@ -204,35 +226,33 @@ void write_checkpoint(const fs::path& path, const typename FlowSolver<dim>::Disc
   const fs::path beside = fs::path(path) += ".part";
   bool good = false;
   {
-    SharedFile file(processes.comm(), beside, MPI_MODE_CREATE | MPI_MODE_WRONLY);
-    if (file.good()) {
-      Header header;
-      header.problem = fingerprint<dim>(discrete.problem);
-      header.reached = progress.reached;
-      header.grad_div = progress.grad_div ? 1 : 0;
-      file.write(0, &header, processes.is_lead() ? sizeof(header) : 0);
-      std::size_t offset = sizeof(header);
-      for (NodePlanes<dim>& field : fields<dim>(discrete)) {
-        std::vector<double>& values = field.values();
-        field.for_values([&](std::size_t place, auto dof) { values[place] = discrete.state[dof]; });
-        const std::size_t skip = field.n_shared();
-        file.write(offset + (field.before() + skip) * sizeof(double), values.data() + skip,
-                   (values.size() - skip) * sizeof(double));
-        offset += field.size() * sizeof(double);
-      }
-      file.flush();
+    SharedFile file(processes, beside, MPI_MODE_CREATE | MPI_MODE_WRONLY);
+    auto parts = fields<dim>(discrete);
+    file.resize(size_of<dim>(parts));
+    Header header;
+    header.problem = fingerprint<dim>(discrete.problem);
+    header.reached = progress.reached;
+    header.grad_div = progress.grad_div ? 1 : 0;
+    file.write(0, &header, processes.is_lead() ? sizeof(header) : 0);
+    std::size_t offset = sizeof(header);
+    for (NodePlanes<dim>& field : parts) {
+      std::vector<double>& values = field.values();
+      field.for_values([&](std::size_t place, auto dof) { values[place] = discrete.state[dof]; });
+      const std::size_t skip = field.n_shared();
+      file.write(offset + (field.before() + skip) * sizeof(double), values.data() + skip,
+                 (values.size() - skip) * sizeof(double));
+      offset += field.size() * sizeof(double);
     }
+    file.flush();
     good = file.good();
   }
-  together(processes.comm(), [&] {
-    if (!good) {
-      std::error_code ignored;
-      if (processes.is_lead()) fs::remove(beside, ignored);
-      throw InputError(path.string(), "cannot be written",
-                       "Check the folder, its permissions and the room on the disk; the checkpoint "
-                       "before it is kept");
-    }
-  });
+  if (!good) {
+    std::error_code ignored;
+    if (processes.is_lead()) fs::remove(beside, ignored);
+    throw InputError(path.string(), "cannot be written",
+                     "Check the folder, its permissions and the room on the disk; the checkpoint "
+                     "before it is kept");
+  }
   together(processes.comm(), [&] {
     if (processes.is_lead()) fs::rename(beside, path);
   });
@@ -244,15 +264,16 @@ std::optional<Progress> read_checkpoint(const fs::path& path,
   const Processes& processes = discrete.processes;
   // All must come to the same answer, whatever they see of a shared disk.
   if (processes.largest(fs::exists(path) ? 0.0 : 1.0) > 0.0) return std::nullopt;
-  SharedFile file(processes.comm(), path, MPI_MODE_RDONLY);
+  SharedFile file(processes, path, MPI_MODE_RDONLY);
   Header header;
   header.magic[0] = '?';
   file.read(0, &header, sizeof(header));
+  MPI_Bcast(&header, sizeof(header), MPI_BYTE, 0, processes.comm());
   auto parts = fields<dim>(discrete);
-  const std::size_t wanted = sizeof(header) + (parts[0].size() + parts[1].size()) * sizeof(double);
   const bool ours = std::memcmp(header.magic, Header().magic, sizeof(header.magic)) == 0;
-  if (ours && header.problem != fingerprint<dim>(discrete.problem)) return std::nullopt;
-  if (ours && file.size() == wanted) {
+  if (ours && !file.all(header.problem == fingerprint<dim>(discrete.problem))) return std::nullopt;
+  const bool whole = file.all(ours && file.size() == size_of<dim>(parts));
+  if (whole) {
     std::size_t offset = sizeof(header);
     for (NodePlanes<dim>& field : parts) {
       std::vector<double>& values = field.values();
@@ -264,11 +285,11 @@ std::optional<Progress> read_checkpoint(const fs::path& path,
       offset += field.size() * sizeof(double);
     }
   }
-  together(processes.comm(), [&] {
-    if (ours && file.good() && file.size() == wanted) return;
+  const bool good = file.good();
+  if (!whole || !good) {
     throw InputError(path.string(), "is no whole checkpoint of a flow",
                      "Remove the file to begin anew");
-  });
+  }
   discrete.state.update_ghost_values();
   return Progress{header.reached, header.grad_div != 0};
 }

@@ -34,6 +34,11 @@ void add_costs(const FlowCosts& costs, const Effort& effort, nlohmann::ordered_j
   object["peak_MB"] = effort.peak_megabytes;
 }
 
+/// Whatever bytes its texts hold.
+std::string line_of(const nlohmann::ordered_json& object) {
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
 }  // namespace
 
 std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const RoofNote& roof) {
@@ -65,7 +70,13 @@ std::string passage_json(const PassageFlow& flow, const Effort& effort) {
 std::string error_json(const InputError& error) {
   nlohmann::ordered_json object;
   object["error"] = {{"where", error.where()}, {"found", error.found()}, {"mend", error.mend()}};
-  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+  return line_of(object);
+}
+
+std::string fault_json(const std::string& text) {
+  nlohmann::ordered_json object;
+  object["fault"] = text;
+  return line_of(object);
 }
 
 }  // namespace manoscope::navier_stokes

@@ -28,5 +28,7 @@ std::string flow_json(const SimulatedFlow& flow, const Effort& effort, const Roo
 std::string passage_json(const PassageFlow& flow, const Effort& effort);
 /// {"error": {"where", "found", "mend"}}
 std::string error_json(const InputError& error);
+/// {"fault": text}, what no user can mend.
+std::string fault_json(const std::string& text);
 
 }  // namespace manoscope::navier_stokes

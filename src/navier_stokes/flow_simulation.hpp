@@ -60,13 +60,13 @@ struct SimulationFiles {
 
 /// Solves the steady laminar flow of an incompressible fluid on two meshes.
 ///
-/// FlowSolver on a mesh of the cells asked for, and on one with two thirds of them along each axis.
-/// The numerical uncertainty of a value is Richardson's estimate (e.g. P. J. Roache, J. Fluids Eng.
-/// 116 (1994) 405) from the difference d of both as if the error fell with the first power of the
-/// size of the cells only: u = |d| / (3/2 - 1) = 2 |d|. Smooth flow converges with the fourth, to
-/// which u leaves a factor of 8; the corners where a roof leaves the rim with a slope take the drop
-/// down to about the first. On the reference flows of docs/simulation.md the error of the drop is
-/// within 2 u (tests).
+/// FlowSolver on a mesh of the cells asked for, and on one with two thirds of them, rounded, along
+/// each axis. The numerical uncertainty of a value is uncertainty_of_difference() of both, for an
+/// error that falls with the first power of the size of the cells: twice the difference where all
+/// axes have two thirds, three times where one has 4 cells and 3. Smooth flow converges with the
+/// fourth power, to which u leaves a factor of 8; the corners where a roof leaves the rim with a
+/// slope take the drop down to about the first. On the reference flows of docs/simulation.md the
+/// error of the drop is within 2 u (tests).
 ///
 /// Boundary conditions: where the mesh begins, a developed profile (2-D a parabola, 3-D that of
 /// the duct below the roof there) or a uniform one, v = w = 0, scaled to the flow rate; no slip;

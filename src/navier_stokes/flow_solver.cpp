@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <deal.II/dofs/dof_tools.h>
@@ -20,11 +21,10 @@ namespace {
 
 constexpr const char* kWhere = "Navier-Stokes solver";
 
-/// Weight of the grad-div term over the Reynolds number, where it is needed: ten times as much
-/// moves the drop by as much as a coarse mesh does.
-constexpr double kGradDiv = 0.01;
-/// The same for the iterative solver: Krylov steps of a channel at Re = 690, 0.03: 105, 0.1: 62.
+/// Weight of the grad-div term for the iterative solver: Krylov steps of a channel at Re = 690,
+/// 0.03: 105, 0.1: 62.
 constexpr double kIterativeGradDiv = 0.1;
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 template <int dim>
 void check(const FlowProblem<dim>& problem) {
@@ -67,16 +67,16 @@ class Newton {
       blocks_ = blocks.get();
       solver_ = std::move(blocks);
       pressure_operators_.emplace(discrete);
-      set_grad_div(kIterativeGradDiv);
     } else {
       solver_ = direct_solver(comm);
     }
+    const double least = blocks_ != nullptr ? kIterativeGradDiv : 0.0;
+    set_grad_div(std::max(least, discrete.problem.grad_div));
   }
 
-  void set_grad_div(double weight) {
-    assembler_.set_grad_div(weight);
-    discrete_.grad_div = weight;
-    discrete_.costs.grad_div = weight != 0.0;
+  /// Turns the grad-div term on, if it is not.
+  void need_grad_div() {
+    if (!discrete_.costs.grad_div) set_grad_div(kGradDiv);
   }
 
   /// @return whether the problem's own start leads to its flow.
@@ -105,20 +105,25 @@ class Newton {
   double follow(double least_step) {
     discrete_.state = given_.value;
     reached_ = 0.0;
-    converges(0.0);
-    return raise(least_step);
+    return converges(0.0) ? raise(least_step) : 0.0;
   }
 
   /// Goes on from the checkpoint, where there is one.
   double resume(double least_step) {
     const auto progress = read_checkpoint<dim>(checkpoint_, discrete_);
     if (!progress) return 0.0;
-    if (progress->grad_div && !discrete_.costs.grad_div) set_grad_div(kGradDiv);
+    if (progress->grad_div) need_grad_div();
     reached_ = progress->reached;
     return raise(least_step);
   }
 
  private:
+  void set_grad_div(double weight) {
+    assembler_.set_grad_div(weight);
+    discrete_.grad_div = weight;
+    discrete_.costs.grad_div = weight != 0.0;
+  }
+
   double raise(double least_step) {
     double step = 1.0;
     while (reached_ < 1.0 && step >= least_step && discrete_.problem.reynolds > 0.0) {
@@ -137,20 +142,25 @@ class Newton {
   /// @return false if the iteration does not converge; the state is then of no use.
   bool converges(double reynolds) {
     constexpr int kMostSteps = 12;
-    // Steps shrink quadratically: what is left behind the last is far smaller than it.
-    constexpr double kSmall = 1e-8, kLost = 1e3;
+    // Each step is about the square of the last: their ratios foretell the next, which is not taken
+    // where it would be too small to matter.
+    constexpr double kSmall = 1e-8, kNextSmall = 1e-9, kLost = 1e3;
     constexpr int kWandering = 5;  // steps by which a start that leads anywhere has come near
     double before = kLost;
     for (int i = 0; i < kMostSteps; ++i) {
       const double change = step(reynolds);
+      if (!std::isfinite(change)) return false;
       if (reynolds == 0.0 || change <= kSmall) return true;  // Stokes flow is linear
-      if (!(change < kLost) || (i >= kWandering && change > 0.5 * before)) return false;
+      const double ratio = change / before;
+      if (i > 0 && change * ratio * ratio <= kNextSmall) return true;
+      if (change >= kLost || (i >= kWandering && change > 0.5 * before)) return false;
       before = change;
     }
     return false;
   }
 
-  /// One step; @return the larger of its parts in u and p, each of the largest value.
+  /// One step; @return the larger of its parts in u and p, each of the largest value; infinity if
+  /// its linear system has no solution that counts.
   double step(double reynolds) {
     together(discrete_.processes.comm(), [&] { monitor_.checkpoint(); });
     assembler_.assemble(reynolds);
@@ -160,11 +170,12 @@ class Newton {
                                       pressure_operators_->transport(),
                                       assembler_.grad_div() * reynolds);
     }
-    solver_->solve(assembler_.matrix(), assembler_.right(), change_);
+    const bool solved = solver_->solve(assembler_.matrix(), assembler_.right(), change_);
     FlowCosts& costs = discrete_.costs;
-    costs.largest_residual = std::max(costs.largest_residual, solver_->residual());
     costs.n_iterations += solver_->n_iterations();
     ++costs.n_newton_steps;
+    if (!solved) return kInfinite;
+    costs.largest_residual = std::max(costs.largest_residual, solver_->residual());
     const double moved = take(change_);
     if (!checkpoint_.empty()) {
       write_checkpoint<dim>(checkpoint_, discrete_, {reached_, costs.grad_div});
@@ -184,14 +195,15 @@ class Newton {
       const int part = is_pressure_[i++];
       largest_value[part] = std::max(largest_value[part], std::abs(value));
       // max() would lose a NaN, and a step that is none must not pass for a small one.
-      if (!(std::abs(moved) <= largest_change[part])) largest_change[part] = std::abs(moved);
+      const double size = std::isnan(moved) ? kInfinite : std::abs(moved);
+      largest_change[part] = std::max(largest_change[part], size);
     }
     state.update_ghost_values();
     double result = 0.0;
     for (int part = 0; part < 2; ++part) {
       const double size = discrete_.processes.largest(largest_value[part]);
       const double moved = discrete_.processes.largest(largest_change[part]);
-      if (size > 0.0) result = std::max(result, moved / size);
+      if (moved > 0.0) result = std::max(result, moved / size);
     }
     return result;
   }
@@ -241,17 +253,19 @@ void FlowSolver<dim>::solve(const Monitor& monitor, const std::filesystem::path&
   Newton<dim> newton(*discrete_, monitor, checkpoint);
   constexpr double kAtOnce = 1.0, kLeastStep = 1.0 / 64.0;
   if (!checkpoint.empty() && newton.resume(kLeastStep) == 1.0) return;
-  if (discrete_->problem.start && newton.starts_near()) return;
-  if (newton.follow(kAtOnce) == 1.0) return;
-  if (discrete_->problem.solver == SolverKind::direct) newton.set_grad_div(kGradDiv);
+  const bool near = discrete_->problem.start != nullptr;
+  if (near ? newton.starts_near() : newton.follow(kAtOnce) == 1.0) return;
+  newton.need_grad_div();
   const double reached = newton.follow(kLeastStep);
   if (reached == 1.0) return;
+  const bool iterative = discrete_->problem.solver == SolverKind::iterative;
   throw InputError(kWhere,
                    fmt::format("no steady flow is found beyond Re = {:.4g}, where Re = {:.4g} is "
                                "asked for",
                                reached * discrete_->problem.reynolds, discrete_->problem.reynolds),
-                   "Take more cells; where that does not help, the flow separates or is "
-                   "unsteady there: lower the flow rate");
+                   fmt::format("Take more cells{}; where that does not help, the flow separates "
+                               "or is unsteady there: lower the flow rate",
+                               iterative ? ", or --solver direct" : ""));
 }
 
 template <int dim>

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "manoscope/core/error.hpp"
 
 namespace manoscope::navier_stokes {
@@ -19,15 +22,21 @@ class DirectSolver final : public LinearSolver {
  private:
   static constexpr int kOrdering = 7, kMetis = 5, kRoom = 14;
   static constexpr int kRightHandSide = 20, kDistributed = 10;
+  static constexpr int kNoRoom = -9, kSingular = -10;
+  /// Of integers and reals for its analysis, and of anything.
+  static constexpr int kNoMemory[] = {-5, -7, -13};
 
-  void prepare(Mat matrix, bool again) override {
-    constexpr int kTries = 4, kNoRoom = -9;
+  bool prepare(Mat matrix, bool again) override {
+    constexpr int kTries = 4;
     for (int i = 0; i < kTries; ++i) {
       const int verdict = factorise(matrix, again || i > 0);
-      if (verdict >= 0) return;
-      if (verdict != kNoRoom) {
-        give_up(fmt::format("MUMPS ends with {}; -13 is want of memory", verdict));
+      if (verdict >= 0) return true;
+      if (verdict == kSingular) return false;
+      if (std::find(std::begin(kNoMemory), std::end(kNoMemory), verdict) != std::end(kNoMemory)) {
+        throw InputError("linear solver of the flow", "its factors do not fit into memory",
+                         "Take fewer cells, or --solver iterative, which needs less");
       }
+      if (verdict != kNoRoom) give_up(fmt::format("MUMPS ends with {}", verdict));
       room_ *= 2;
     }
     give_up("MUMPS does not find room for its factors");
@@ -100,18 +109,18 @@ void LinearSolver::refine(Mat matrix, Vec right, Vec x) {
   }
 }
 
-void LinearSolver::solve(Mat matrix, Vec right, Vec x) {
+bool LinearSolver::solve(Mat matrix, Vec right, Vec x) {
   if (rest_ == nullptr) {
     check_petsc(VecDuplicate(right, &rest_));
     check_petsc(VecDuplicate(right, &step_));
   }
   // An analysis looks at values, too: one made for others may fail where a new one does not.
   for (const bool again : {false, true}) {
-    prepare(matrix, again);
+    if (!prepare(matrix, again)) continue;
     refine(matrix, right, x);
-    if (residual_ <= tolerance_) return;
+    if (residual_ <= tolerance_) return true;
   }
-  give_up(fmt::format("the residual stays at {:.2g} of the right-hand side", residual_));
+  return false;
 }
 
 std::unique_ptr<LinearSolver> direct_solver(MPI_Comm comm, double tolerance) {

@@ -27,16 +27,18 @@ class LinearSolver {
   LinearSolver& operator=(const LinearSolver&) = delete;
 
   /// x of A x = b. The pattern of A stays that of the first call.
-  /// @throws InternalError if the library gives up, for want of memory too, or the residual stays
-  ///         too large.
-  void solve(Mat matrix, Vec right, Vec x);
+  /// @return false if the matrix is singular or the residual stays too large; x is then of no use.
+  ///         All processes answer the same.
+  /// @throws InputError if memory does not suffice, InternalError if the library gives up.
+  [[nodiscard]] bool solve(Mat matrix, Vec right, Vec x);
 
   double residual() const { return residual_; }       ///< |b - A x| / |b| of the last solution
   int n_iterations() const { return n_iterations_; }  ///< of the last solution
 
  protected:
   /// Makes ready for this matrix; `again` after a solution that failed.
-  virtual void prepare(Mat matrix, bool again) = 0;
+  /// @return false if that cannot be done, or not in another way than before.
+  virtual bool prepare(Mat matrix, bool again) = 0;
   KSP ksp() const { return ksp_; }
 
  private:

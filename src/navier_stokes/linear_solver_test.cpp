@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "manoscope/core/error.hpp"
 #include "processes.hpp"
 #include "tests/support/quiet_traps.hpp"
 
@@ -74,7 +73,7 @@ TEST_F(LinearSolverTest, SolvesSaddlePoints) {
   const auto solver = direct_solver(PETSC_COMM_SELF);
   const Saddle system(40);
   for (int i = 0; i < 2; ++i) {  // the analysis is used again
-    solver->solve(system.matrix, system.right, system.found);
+    ASSERT_TRUE(solver->solve(system.matrix, system.right, system.found));
     EXPECT_LT(system.error(), 1e-11);  // condition about 1e3
     EXPECT_LE(solver->residual(), 1e-9);
     MatScale(system.matrix, 2.0);
@@ -85,14 +84,13 @@ TEST_F(LinearSolverTest, SolvesSaddlePoints) {
 TEST_F(LinearSolverTest, GivesNoAnswerToASingularSystem) {
   const Saddle system(40, true);
   VecSet(system.right, 1.0);
-  EXPECT_THROW(direct_solver(PETSC_COMM_SELF)->solve(system.matrix, system.right, system.found),
-               InternalError);
+  EXPECT_FALSE(direct_solver(PETSC_COMM_SELF)->solve(system.matrix, system.right, system.found));
 }
 
 TEST_F(LinearSolverTest, AnswersZeroWithZero) {
   const Saddle system(8);
   VecSet(system.right, 0.0);
-  direct_solver(PETSC_COMM_SELF)->solve(system.matrix, system.right, system.found);
+  EXPECT_TRUE(direct_solver(PETSC_COMM_SELF)->solve(system.matrix, system.right, system.found));
   double size = 1.0;
   VecNorm(system.found, NORM_2, &size);
   EXPECT_EQ(size, 0.0);

@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "flow_json.hpp"
 #include "flow_simulation.hpp"
 #include "given_wall.hpp"
+#include "manoscope/core/atomic_file.hpp"
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/options.hpp"
 #include "manoscope/core/provenance.hpp"
@@ -150,37 +152,65 @@ void answer(std::chrono::steady_clock::time_point start, const SimulationFiles& 
     if (!processes.is_lead()) return;
     print_answer(text(effort));
     if (files.checkpoint.empty()) return;
-    std::filesystem::remove(files.checkpoint);
-    std::filesystem::remove(std::filesystem::path(files.checkpoint) += ".coarse");
+    for (const char* end : {"", ".coarse", ".part", ".coarse.part"}) {
+      std::filesystem::remove(std::filesystem::path(files.checkpoint) += end);
+    }
   });
+}
+
+/// Before the work, not behind it: a picture that cannot be written.
+void check(const SimulationFiles& files) {
+  if (Processes::all().is_lead() && !files.vtu.empty()) const AtomicFile probe(files.vtu);
 }
 
 void run_channel(const std::vector<std::string>& words) {
   const auto start = std::chrono::steady_clock::now();
-  const auto line = read_channel_words(words);
-  const GivenWall wall(read_shape_table(line.shape), line.options);
-  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, wall.length());
+  CommandLine<SimulationOptions> line;
+  std::optional<GivenWall> wall;
+  together(Processes::all().comm(), [&] {
+    line = read_channel_words(words);
+    check(line.files);
+    wall.emplace(read_shape_table(line.shape), line.options);
+  });
+  const Array1 stations = Array1::LinSpaced(line.options.stations, 0.0, wall->length());
   SimulatedFlow flow =
-      simulate(channel_of(wall, line.options), stations, line.options.mesh, line.files);
-  flow.x += wall.start();
+      simulate(channel_of(*wall, line.options), stations, line.options.mesh, line.files);
+  flow.x += wall->start();
   answer(start, line.files,
-         [&](const Effort& effort) { return flow_json(flow, effort, wall.note(line.options)); });
+         [&](const Effort& effort) { return flow_json(flow, effort, wall->note(line.options)); });
 }
 
 void run_passage(const std::vector<std::string>& words) {
   const auto start = std::chrono::steady_clock::now();
-  const auto line = read_words<PassageOptions>(words);
-  if (!line.shape.empty()) {
-    throw InputError(line.shape, "is a shape, and a passage has none", "Leave it out");
-  }
-  const PassageFlow flow =
-      simulate_passage(passage_of(line.options), line.options.mesh, line.files);
+  CommandLine<PassageOptions> line;
+  SimulatedPassage passage;
+  together(Processes::all().comm(), [&] {
+    line = read_words<PassageOptions>(words);
+    check(line.files);
+    if (!line.shape.empty()) {
+      throw InputError(line.shape, "is a shape, and a passage has none", "Leave it out");
+    }
+    passage = passage_of(line.options);
+  });
+  const PassageFlow flow = simulate_passage(passage, line.options.mesh, line.files);
   answer(start, line.files, [&](const Effort& effort) { return passage_json(flow, effort); });
 }
 
 void run(const std::vector<std::string>& words) {
   const bool passage = std::find(words.begin(), words.end(), "--passage") != words.end();
   passage ? run_passage(words) : run_channel(words);
+}
+
+/// Tells whoever reads standard output, at once: a process that ends with a fault may take the
+/// others with it.
+void tell(const std::string& json, const std::string& text) {
+  std::fwrite(json.data(), 1, json.size(), stdout);
+  std::fflush(stdout);
+  fmt::print(stderr, "manoscope-navier-stokes: {}\n", text);
+}
+
+void tell_fault(const std::string& text) {
+  tell(fault_json(text), fmt::format("fault of the program: {}", text));
 }
 
 }  // namespace
@@ -208,14 +238,13 @@ int main(int argc, char** argv) {
     return 0;
   } catch (const InputError& error) {
     if (processes.is_lead()) {
-      fmt::print("{}", navier_stokes::error_json(error));
-      fmt::print(stderr, "manoscope-navier-stokes: error: {}\n", error.what());
+      navier_stokes::tell(navier_stokes::error_json(error), fmt::format("error: {}", error.what()));
     }
     return kUsersFault;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "manoscope-navier-stokes: out of memory: take fewer cells\n");
+    navier_stokes::tell_fault("out of memory: take fewer cells");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "manoscope-navier-stokes: fault of the program: {}\n", error.what());
+    navier_stokes::tell_fault(error.what());
   }
   if (processes.size() > 1) MPI_Abort(processes.comm(), kOurFault);
   return kOurFault;

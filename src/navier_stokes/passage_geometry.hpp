@@ -26,6 +26,7 @@ struct SimulatedPassage {
   PortSide port_side = PortSide::top;
   flow::Fluid fluid{1.0 * mPa_s, 998.0 * kg_per_m3};
   FlowRate flow_rate{};
+  double stretch = 1.0;  ///< of the lengths of port and wider section that are solved
 
   /// @throws InputError for sizes out of range or that do not fit.
   void validate() const;
@@ -47,6 +48,8 @@ struct PassageGeometry {
   bool whole_width = false;     ///< else z >= 0 alone is solved
   int far_axis = 0;             ///< the far end faces along s, y or z: 0, 1, 2
   flow::RigidPassage far;       ///< section there, and its length, whose friction is not counted
+  /// Share of the length that a jet into a wider section needs which is not solved.
+  double missing = 0.0;
 };
 
 }  // namespace manoscope::navier_stokes

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_pair.hpp"
+
 namespace manoscope::navier_stokes {
 namespace {
 
@@ -28,8 +30,10 @@ void fill(double low, double high, const Sizes& sizes, bool coarse, std::vector<
   for (int i = 0; i < kSteps; ++i) {
     share.push_back(share.back() + step / sizes.at(low + (i + 0.5) * step));
   }
-  int n = std::max(1, static_cast<int>(std::ceil(share.back())));
-  if (coarse) n = std::max(1, (2 * n + 1) / 3);
+  int n = std::max(kFewestCells, static_cast<int>(std::ceil(share.back())));
+  // Of 4, 7, 10, ... cells two thirds are rounded up.
+  if (n % 3 == 1) ++n;
+  if (coarse) n = coarser_cells(n);
   int at = 0;
   for (int cell = 1; cell < n; ++cell) {
     const double wanted = share.back() * cell / n;

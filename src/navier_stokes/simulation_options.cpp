@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "manoscope/core/error.hpp"
+#include "mesh_pair.hpp"
 
 namespace manoscope::navier_stokes {
 namespace {
@@ -40,8 +41,8 @@ void MeshOptions::validate() const {
   check_integer("dim", dim, 2, 3);
   check_integer("order", order, 2, 4);
   check_cells("cells-along", cells_along, 6);
-  check_cells("cells-up", cells_up, 2);
-  check_cells("cells-across", cells_across, 2);
+  check_cells("cells-up", cells_up, kFewestCells);
+  check_cells("cells-across", cells_across, kFewestCells);
   constexpr const char* kSolvers[] = {"auto", "direct", "iterative"};
   if (std::find(std::begin(kSolvers), std::end(kSolvers), solver) == std::end(kSolvers)) {
     throw InputError("--solver", fmt::format("\"{}\" is none", solver),

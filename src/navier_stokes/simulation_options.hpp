@@ -12,7 +12,7 @@ struct MeshOptions {
   int dim = 2;
   int order = 2;         ///< of the velocities
   int cells_along = 0;   ///< between x = 0 and the end of the channel; 0: by its length
-  int cells_up = 0;      ///< from floor to roof; 0: 8 in two dimensions, 4 in three
+  int cells_up = 0;      ///< from floor to roof; 0: 8 in two dimensions, 5 in three
   int cells_across = 0;  ///< of half the width; 0: 8
   double tolerance = 5e-3;
   std::string solver = "auto";  ///< direct, iterative, or by the number of unknowns

@@ -29,6 +29,8 @@ TEST(SimulationOptions, NameWhatIsOutOfRange) {
                                     {"order", "1"},
                                     {"cells-along", "2"},
                                     {"cells-up", "-1"},
+                                    {"cells-up", "2"},
+                                    {"cells-across", "2"},
                                     {"height", "0um"},
                                     {"flow-rate", "-5mL/min"},
                                     {"inlet", "parabolic"},

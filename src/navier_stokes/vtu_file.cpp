@@ -23,8 +23,8 @@ class AppendedData {
  public:
   template <class T>
   std::string array(const std::string& attributes, const std::vector<T>& values) {
-    const std::string head = fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n",
-                                         attributes, bytes_.size());
+    std::string head = fmt::format("<DataArray {} format=\"appended\" offset=\"{}\"/>\n",
+                                   attributes, bytes_.size());
     const std::uint64_t size = values.size() * sizeof(T);
     append(&size, sizeof(size));
     append(values.data(), size);
@@ -81,6 +81,23 @@ std::string piece_text(const FlowPiece<dim>& piece, const VtuScales& scales) {
   return text + data.bytes() + "\n</AppendedData>\n</VTKFile>\n";
 }
 
+/// Text inside the quotes of an attribute.
+std::string attribute(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
 /// The file that names the pieces of several processes.
 std::string index_text(const std::vector<std::string>& pieces) {
   std::string text = fmt::format(kHead, "PUnstructuredGrid");
@@ -91,7 +108,9 @@ std::string index_text(const std::vector<std::string>& pieces) {
       "<PDataArray type=\"Float64\" Name=\"pressure\"/>\n"
       "<PDataArray type=\"Float64\" Name=\"velocity\" NumberOfComponents=\"3\"/>\n"
       "</PPointData>\n";
-  for (const std::string& piece : pieces) text += fmt::format("<Piece Source=\"{}\"/>\n", piece);
+  for (const std::string& piece : pieces) {
+    text += fmt::format("<Piece Source=\"{}\"/>\n", attribute(piece));
+  }
   return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
@@ -105,12 +124,15 @@ std::filesystem::path write_vtu(const std::filesystem::path& path, const FlowSol
   const auto piece_name = [&](int rank) {
     return fmt::format("{}_{}.vtu", path.stem().string(), rank);
   };
-  const std::filesystem::path index =
-      std::filesystem::path(path).replace_extension(alone ? path.extension() : ".pvtu");
+  auto index = std::filesystem::path(path).replace_extension(".pvtu");
   together(processes.comm(), [&] {
     const auto piece = alone ? path : path.parent_path() / piece_name(processes.rank());
     write_file_atomically(piece, piece_text(solver.piece(), scales));
-    if (alone || !processes.is_lead()) return;
+  });
+  if (alone) return path;
+  // After all pieces are there: it names them.
+  together(processes.comm(), [&] {
+    if (!processes.is_lead()) return;
     std::vector<std::string> pieces;
     for (int rank = 0; rank < processes.size(); ++rank) pieces.push_back(piece_name(rank));
     write_file_atomically(index, index_text(pieces));

@@ -59,6 +59,16 @@ class SimulateExperiment(DemoFolder):
                 (("--shape", shape, "--run", "Q5"), "--run"),
                 (("--shape", shape, "--parasitic"), "--parasitic"),
                 ((self.experiment, "--run", "Q5", "--height", "175um"), "--height"),
+                # What it would be anyway is refused as well.
+                ((self.experiment, "--run", "Q5", "--density", "998kg/m3"), "--density"),
+                ((self.experiment, "--run", "Q5", "--csv", self.folder / "none" / "p.csv"),
+                 "p.csv"),
+                ((self.experiment, "--parasitic", "--checkpoint", "flow"), "--checkpoint"),
+                ((self.experiment, "--parasitic", "--vtu", "flow.vtu"), "--vtu"),
+                ((self.experiment, "--parasitic", "--dim", "3"), "--dim"),
+                ((self.experiment, "--parasitic", "--cells-up", "6"), "--cells-up"),
+                ((self.experiment, "--parasitic", "--inlet", "uniform"), "--inlet"),
+                ((self.experiment, "--parasitic", "--smoothing", "50um"), "--smoothing"),
                 ((self.experiment, "--run", "Q5", "--inlet", "slanted"), "--inlet"),
                 ((self.experiment, "--run", "Q5", "--dim", "4"), "--dim"),
                 ((self.experiment, "--run", "Q5", "--wall-shape", "parabola"), "measured"),
@@ -175,7 +185,7 @@ class SimulateExperiment(DemoFolder):
 
     @NEEDS_SOLVER
     def test_in_three_dimensions_the_roof_is_the_map_or_one_shape(self):
-        cells = ("--dim", "3", "--inlet", "developed", "--cells-along", "20", "--cells-up", "2",
+        cells = ("--dim", "3", "--inlet", "developed", "--cells-along", "20", "--cells-up", "3",
                  "--cells-across", "4")
         flows = {}
         for shape in ("auto", "map", "response"):
@@ -294,14 +304,25 @@ class SimulateExperiment(DemoFolder):
 
     @NEEDS_SOLVER
     def test_ctrl_c_ends_the_solver(self):
-        scratch, result = self.folder / "scratch", self.folder / "stopped"
+        self.stop_after_start()
+
+    @NEEDS_SOLVER
+    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
+    def test_ctrl_c_ends_all_processes_of_the_solver(self):
+        self.stop_after_start("--processes", "2")
+
+    def stop_after_start(self, *options):
+        """A Ctrl-C leaves neither processes nor files."""
+        number = len(options)  # the class shares one folder
+        scratch = self.folder / f"scratch{number}"
+        result = self.folder / f"stopped{number}"
         scratch.mkdir()
         shutil.copytree(self.out, result)
         before = hashes(result)
         # Cells for minutes.
         child = subprocess.Popen(
             [PROGRAM, "simulate", self.experiment, "--run", "Q5", "-o", result, "--cells-along",
-             "3000", "--cells-up", "40"],
+             "3000", "--cells-up", "40", *options],
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ,
                                                                  "TMPDIR": str(scratch)})
         try:

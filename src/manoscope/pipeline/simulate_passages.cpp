@@ -206,7 +206,7 @@ std::vector<std::string> passage_doubts(const Experiment& experiment,
     if (d.converged()) continue;
     doubts.push_back(fmt::format(
         "at {:.4g} mL/min the passages have not converged: {:.2g} % uncertain by the mesh (inlet), "
-        "{:.2g} % (outlet)",
+        "{:.2g} % (outlet): take --order 3, or accept it (--tolerance)",
         d.flow_rate.in(mL_per_min), 100.0 * d.inlet.drop_uncertainty / std::abs(d.drop()),
         100.0 * d.outlet.drop_uncertainty / std::abs(d.drop())));
   }
