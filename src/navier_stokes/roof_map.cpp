@@ -15,6 +15,24 @@ namespace {
 
 constexpr const char* kWhere = "map of the roof";
 
+/// Leaves out the last row where the clamped side is nearer to it than 0.3 of the spacing: slopes
+/// over so short a way would carry its noise inwards several times over. Between 0.3 and 1 a value
+/// inside holds at most 1.3 times the noise of a row (test).
+void leave_room(double side, double near, std::vector<double>& z, std::vector<Index>& column) {
+  constexpr double kNearest = 0.3;
+  const double behind = side - z.back(), spacing = z.back() - z[z.size() - 2];
+  if (behind <= near || behind >= kNearest * spacing) return;
+  z.pop_back();
+  column.pop_back();
+}
+
+/// The same rows from the other side.
+void mirror(std::vector<double>& z, std::vector<Index>& column) {
+  for (double& at : z) at = -at;
+  std::reverse(z.begin(), z.end());
+  std::reverse(column.begin(), column.end());
+}
+
 /// The map from side to side: mirrored if it begins at the middle, cut or clamped at the sides.
 ShapeTable to_sides(const ShapeTable& table, double width) {
   constexpr double kRoundOff = 1e-6, kLargestGap = 0.1;  // widths
@@ -48,6 +66,7 @@ ShapeTable to_sides(const ShapeTable& table, double width) {
                      "Give z from side to side, or from the middle to one side, counted from the "
                      "middle of the channel");
   }
+  leave_room(side, near, z, column);
   if (behind > near) add(side, -1);
   if (half) {
     const std::vector<double> right = z;
@@ -59,8 +78,10 @@ ShapeTable to_sides(const ShapeTable& table, double width) {
     }
     for (std::size_t k = 0; k < right.size(); ++k) add(right[k], its_column[k]);
   } else if (before > near) {
-    z.insert(z.begin(), -side);
-    column.insert(column.begin(), -1);
+    mirror(z, column);
+    leave_room(side, near, z, column);
+    add(side, -1);
+    mirror(z, column);
   }
   const auto n = static_cast<Index>(z.size());
   ShapeTable whole{table.x, Eigen::Map<const Array1>(z.data(), n), Array2::Zero(table.x.size(), n)};

@@ -58,6 +58,27 @@ TEST(RoofMap, OfPixelsThatEndBeforeTheSidesIsClampedThere) {
   EXPECT_EQ(wide.z().size(), 42);
 }
 
+TEST(RoofMap, CarriesTheNoiseOfTheRowsBesideTheSidesNoFartherThanThatOfOthers) {
+  const double pixel = kWidth / 40.0;
+  for (const double before_side : {0.01, 0.02, 0.1, 0.29, 0.31, 0.5, 0.9}) {
+    const double last = 0.5 * kWidth - before_side * pixel;
+    for (const bool half : {false, true}) {
+      const Array1 z = half ? Array1::LinSpaced(20, last - 19.0 * pixel, last)
+                            : Array1::LinSpaced(41, -last, last);
+      const Index n = z.size();
+      ShapeTable noisy{Array1::LinSpaced(5, 0.0, kLength), z, Array2::Zero(5, n)};
+      noisy.zeta.col(n - 1).setOnes();
+      if (!half) noisy.zeta.col(0).setOnes();
+      // The worst of 1 in the last row: overshoots of a cubic in the middle of even rows are 1.0.
+      const double gain = largest_error(RoofMap(noisy, kW), [](double, double) { return 0.0; });
+      EXPECT_LT(gain, 1.3) << before_side << ' ' << half;
+    }
+    // Rows from -last to last are as far apart as 1.3 pixels at most: spacing^4.
+    const RoofMap map(table(Array1::LinSpaced(41, -last, last)), kW);
+    EXPECT_LT(largest_error(map, roof), 1.5e-8) << before_side;
+  }
+}
+
 TEST(RoofMap, OfOneHalfIsMirrored) {
   const auto even = [](double x, double z) { return 0.5 * (roof(x, z) + roof(x, -z)); };
   for (const double first : {0.0, 0.01 * kWidth}) {
