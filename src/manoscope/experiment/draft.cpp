@@ -1,8 +1,11 @@
 #include "manoscope/experiment/draft.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <stdio.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <optional>
 #include <system_error>
@@ -94,17 +97,25 @@ std::vector<std::string> names_of(const std::vector<GuessedMap>& maps) {
   return names;
 }
 
+/// What an editor has put there meanwhile stays.
+bool rename_to_new(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  const bool unknown = errno == EINVAL || errno == ENOSYS;  // to some file systems
+  std::error_code error;
+  if (!unknown || fs::exists(fs::symlink_status(to, error))) return false;
+  fs::rename(from, to, error);
+  return !error;
+}
+
 /// Writes under another name first: what carries the final name is whole.
 void write_new(const fs::path& path, const std::string& text) {
   fs::path part = path;
   part += ".part";
-  std::error_code error;
   {
     std::ofstream stream(part, std::ios::binary | std::ios::trunc);
     stream << text;
     stream.close();
-    if (stream) fs::rename(part, path, error);
-    if (stream && !error) return;
+    if (stream && rename_to_new(part, path)) return;
   }
   std::error_code ignored;
   fs::remove(part, ignored);

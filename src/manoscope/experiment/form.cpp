@@ -132,6 +132,8 @@ void apply_list(ExperimentTexts& texts, const char* section, const std::optional
     texts.toml = io::with_toml_value(texts.toml, section, "list", io::toml_quoted(wanted->file));
   }
   std::string& text = texts.lists[wanted->file];
+  // A file that is there already is named as it is, even where it is no sound table.
+  if (!same_file && !text.empty() && same_table(read_csv_form(text, wanted->file), *wanted)) return;
   text = edit_csv_list(text, *wanted);
 }
 

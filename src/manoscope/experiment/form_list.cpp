@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "manoscope/core/error.hpp"
 #include "manoscope/core/unit_text.hpp"
+#include "manoscope/experiment/align_rows.hpp"
 #include "manoscope/io/csv_table.hpp"
 #include "manoscope/io/toml_edit.hpp"
 
@@ -38,16 +40,25 @@ std::string csv_line(const std::vector<std::string>& cells, char delimiter) {
   return line;
 }
 
-/// Lines with their ends.
+/// Lines with their ends: a line feed, behind a carriage return or not, or that alone.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < text.size();) {
-    const auto end = text.find('\n', at);
-    const std::size_t next = end == std::string::npos ? text.size() : end + 1;
+    std::size_t next = std::min(text.find_first_of("\r\n", at), text.size() - 1) + 1;
+    if (text[next - 1] == '\r' && next < text.size() && text[next] == '\n') ++next;
     lines.push_back(text.substr(at, next - at));
     at = next;
   }
   return lines;
+}
+
+/// All that may be a comment of a table, a line each.
+std::string comments_of(const std::string& text, const std::string& end) {
+  std::string comments;
+  for (const std::string& line : lines_of(text)) {
+    if (line.starts_with('#')) comments += line.substr(0, line.find_first_of("\r\n")) + end;
+  }
+  return comments;
 }
 
 void check_cells(const FormList& wanted) {
@@ -100,32 +111,39 @@ std::string edit_csv_list(const std::string& text, const FormList& wanted) {
   const io::CsvTable table = io::parse_csv_table(text, wanted.file);
   const std::string end = text.find("\r\n") == std::string::npos ? "\n" : "\r\n";
   std::vector<std::string> lines = lines_of(text);
-  if (lines.back().back() != '\n') lines.back() += end;
-  const auto line = [&](int number) -> std::string& {
-    return lines[static_cast<std::size_t>(number - 1)];
+  if (lines.back().find_last_of("\r\n") == std::string::npos) lines.back() += end;
+  // Rows are taken out of the lines, and put behind the line in which they, or those before, ended.
+  std::vector<std::string> rows(lines.size());
+  const auto behind = [&](int number) -> std::string& {
+    return rows[static_cast<std::size_t>(number - 1)];
   };
-  if (old.columns != wanted.columns) {
-    line(table.header_line) = csv_line(wanted.columns, table.delimiter) + end;
+  const auto take_out = [&](const io::CsvRow& row) {
+    std::string taken;
+    for (int number = row.line; number <= row.last_line; ++number) {
+      taken += std::exchange(lines[static_cast<std::size_t>(number - 1)], "");
+    }
+    return taken;
+  };
+  std::vector<std::string> before;
+  for (const io::CsvRow& row : table.rows) before.push_back(take_out(row));
+  const bool same_columns = old.columns == wanted.columns;
+  if (!same_columns) {
+    lines[static_cast<std::size_t>(table.header_line - 1)] =
+        csv_line(wanted.columns, table.delimiter) + end;
   }
-  for (std::size_t i = 0; i < old.rows.size(); ++i) {
-    const bool kept = i < wanted.rows.size();
-    if (kept && old.columns == wanted.columns && old.rows[i] == wanted.rows[i]) continue;
-    line(old.lines[i]) = kept ? csv_line(wanted.rows[i], table.delimiter) + end : "";
+  const auto old_rows = align_rows(old, wanted);
+  int last = table.header_line;
+  for (std::size_t i = 0; i < wanted.rows.size(); ++i) {
+    const auto k = old_rows[i];
+    if (k) last = table.rows[*k].last_line;
+    const bool same = k && same_columns && old.rows[*k] == wanted.rows[i];
+    behind(last) += same ? before[*k] : csv_line(wanted.rows[i], table.delimiter) + end;
   }
-  const auto last =
-      static_cast<std::size_t>(old.lines.empty() ? table.header_line : old.lines.back());
-  std::string added, changed;
-  for (std::size_t i = old.rows.size(); i < wanted.rows.size(); ++i) {
-    added += csv_line(wanted.rows[i], table.delimiter) + end;
-  }
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    changed += lines[i];
-    if (i + 1 == last) changed += added;
-  }
-  // Cells of several lines, or line ends of old: the table is written anew, without its comments.
+  std::string changed;
+  for (std::size_t i = 0; i < lines.size(); ++i) changed += lines[i] + rows[i];
   const FormList read = read_csv_form(changed, wanted.file);
   if (!read.locked.empty() || !same_table(read, wanted)) {
-    changed = whole_table(wanted, table.delimiter, end);
+    changed = comments_of(text, end) + whole_table(wanted, table.delimiter, end);
     if (!same_table(read_csv_form(changed, wanted.file), wanted)) {
       throw InputError(wanted.file, "a cell or a head that a table cannot hold",
                        "Write plain texts without blanks around them, and no row without any text");

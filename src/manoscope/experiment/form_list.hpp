@@ -25,7 +25,9 @@ struct FormList {
 FormList read_csv_form(const std::string& text, const std::string& name);
 
 /// The text of a CSV list with another table in it: comments, the head and rows that are as before
-/// stay byte by byte, as does the delimiter.
+/// stay byte by byte, as does the delimiter. A row is known by its map, wherever it has moved.
+/// Where that cannot be (a cell holds a line end of old machines) the table is written anew, and
+/// all comments stand above it.
 /// @throws InputError if a row has other cells than there are columns, or a cell cannot be written.
 std::string edit_csv_list(const std::string& text, const FormList& wanted);
 

@@ -41,6 +41,45 @@ TEST(FormList, ChangesTheLinesOfChangedRowsAlone) {
             "# CONFIRM 100 Pa\nmap,pressure [Pa],sequence\n# a spare\n");
 }
 
+TEST(FormList, CommentsStayAtTheirRowsWhereverARowIsTakenOutOrPutIn) {
+  const std::string text =
+      "map,pressure [Pa]\na.gsf,0\n# of b\nb.gsf,1\n# of c: dust\nc.gsf, 2\n# of d\nd.gsf,3\n";
+  FormList list = wanted_of(text);
+  list.rows.erase(list.rows.begin() + 1);
+  EXPECT_EQ(edit_csv_list(text, list),
+            "map,pressure [Pa]\na.gsf,0\n# of b\n# of c: dust\nc.gsf, 2\n# of d\nd.gsf,3\n");
+  list.rows[1][1] = "2.5";
+  list.rows.insert(list.rows.begin(), {"new.gsf", "9"});
+  EXPECT_EQ(edit_csv_list(text, list),
+            "map,pressure [Pa]\nnew.gsf,9\na.gsf,0\n# of b\n# of c: dust\nc.gsf,2.5\n# of "
+            "d\nd.gsf,3\n");
+  list = wanted_of(text);
+  list.rows[2][0] = "c2.gsf";  // another map of the same row
+  list.rows.pop_back();
+  EXPECT_EQ(edit_csv_list(text, list),
+            "map,pressure [Pa]\na.gsf,0\n# of b\nb.gsf,1\n# of c: dust\nc2.gsf,2\n# of d\n");
+}
+
+TEST(FormList, RowsThatChangePlacesAndColumnsAreRead) {
+  FormList list = wanted_of(kText);
+  std::swap(list.rows[0], list.rows[1]);
+  EXPECT_TRUE(same_table(wanted_of(edit_csv_list(kText, list)), list));
+  list.columns = {"pressure [Pa]", "run"};
+  list.rows = {{"1", "x"}, {"2", "y"}, {"3", "z"}};
+  EXPECT_TRUE(same_table(wanted_of(edit_csv_list(kText, list)), list));
+}
+
+TEST(FormList, OfThousandsOfRowsOneIsTakenOut) {
+  FormList list;
+  list.columns = {"map", "pressure [Pa]"};
+  for (int i = 0; i < 5000; ++i) list.rows.push_back({std::to_string(i) + ".gsf", "0"});
+  const std::string text = edit_csv_list("", list) + "# end\n";
+  list.rows.erase(list.rows.begin() + 2500);
+  std::string wanted = text;
+  wanted.erase(wanted.find("2500.gsf"), std::string("2500.gsf,0\n").size());
+  EXPECT_EQ(edit_csv_list(text, list), wanted);
+}
+
 TEST(FormList, ChangesColumnsAndKeepsDelimiterLineEndsAndComments) {
   const std::string text = "# top\r\nmap;pressure [Pa]\r\na.gsf;1,5";
   FormList list = wanted_of(text);
@@ -57,13 +96,29 @@ TEST(FormList, WritesATableIntoAnEmptyText) {
   EXPECT_EQ(edit_csv_list("", list), "map,flow_rate [mL/min]\nf.gsf,5\n");
 }
 
-TEST(FormList, WritesCellsOfSeveralLinesAnew) {
-  const std::string text = "map,run\n\"a\nb\",x\nc,y\n";
+TEST(FormList, KnowsCellsOfSeveralLinesFromComments) {
+  const std::string text = "# top\nmap,run\n\"a\n# no comment\",x\n# of c\nc,y\n";
   FormList list = wanted_of(text);
   ASSERT_EQ(list.rows.size(), 2u);
   list.rows[0][1] = "z";
   const std::string changed = edit_csv_list(text, list);
+  EXPECT_EQ(changed, "# top\nmap,run\n\"a\n# no comment\",z\n# of c\nc,y\n");
+  list.rows.erase(list.rows.begin());
+  EXPECT_EQ(edit_csv_list(changed, list), "# top\nmap,run\n# of c\nc,y\n");
+}
+
+TEST(FormList, TakesLineEndsOfOldMachines) {
+  const std::string text = "# top\rmap,run\ra,x\r# of b\rb,y";
+  FormList list = wanted_of(text);
+  list.rows[0][1] = "z";
+  EXPECT_EQ(edit_csv_list(text, list), "# top\rmap,run\ra,z\n# of b\rb,y\n");
+  // Within quotes a carriage return alone ends no line: nothing is lost all the same.
+  const std::string odd = "# top\nmap,run\n\"a\rb\",x\n# of c\nc,y\n";
+  list = wanted_of(odd);
+  list.rows[1][1] = "z";
+  const std::string changed = edit_csv_list(odd, list);
   EXPECT_TRUE(same_table(wanted_of(changed), list)) << changed;
+  EXPECT_NE(changed.find("# of c\n"), std::string::npos);
 }
 
 TEST(FormList, LocksWhatIsNoTable) {

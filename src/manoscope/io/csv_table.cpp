@@ -127,6 +127,7 @@ class RecordReader {
         ++at_;
         continue;
       }
+      row.last_line = line_;
       skip_line_end();
       return row;
     }

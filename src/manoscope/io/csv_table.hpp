@@ -17,6 +17,7 @@ struct CsvColumn {
 struct CsvRow {
   int line = 0;                    ///< 1-based line in the file
   std::vector<std::string> cells;  ///< as many as there are columns, trimmed
+  int last_line = 0;               ///< beyond `line` where a cell has several lines
 };
 
 /// A table with a header line: text cells, to be understood by whoever knows the columns.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/io/toml_comments.hpp"
 #include "manoscope/io/toml_document.hpp"
 
 namespace manoscope::io {
@@ -91,8 +92,18 @@ std::optional<std::size_t> last_value_end(const Document& document, const toml::
   return last;
 }
 
+const char* line_end_of(const std::string& text) {
+  return text.find("\r\n") == std::string::npos ? "\n" : "\r\n";
+}
+
+/// The first byte behind the head of a section.
+std::size_t first_line_in(const Document& document, const toml::table& table,
+                          const std::string& section) {
+  return section.empty() ? 0 : document.line_end(document.offset(table.source().begin));
+}
+
 std::string insert_line(const std::string& text, std::size_t at, const std::string& line) {
-  const std::string end = text.find("\r\n") == std::string::npos ? "\n" : "\r\n";
+  const std::string end = line_end_of(text);
   const bool open = at > 0 && text[at - 1] != '\n';
   return text.substr(0, at) + (open ? end : "") + line + end + text.substr(at);
 }
@@ -127,6 +138,25 @@ bool only_blanks(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
+/// Comments as lines of their own in a document.
+std::string lines_of(const std::vector<std::string>& comments, const std::string& indent,
+                     const std::string& document) {
+  std::string lines;
+  for (const std::string& comment : comments) {
+    lines += indent;
+    lines += comment;
+    lines += line_end_of(document);
+  }
+  return lines;
+}
+
+std::string replaced(std::string text, std::string_view what, std::string_view by) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string with_toml_value(const std::string& text, const std::string& section,
@@ -136,15 +166,22 @@ std::string with_toml_value(const std::string& text, const std::string& section,
   if (table == nullptr && document.root().contains(section)) refuse(section, key);
   const toml::table wanted = with_section(document.root(), section,
                                           with_value(table ? *table : toml::table{}, key, value));
-  const std::string line = key + " = " + value;
+  const std::string end_of_line = line_end_of(text);
+  const std::string written = end_of_line == "\n" ? value : replaced(value, "\n", end_of_line);
+  const std::string line = key + " = " + written;
   std::string changed;
   if (table == nullptr) {
-    const bool spaced = text.empty() || text.ends_with("\n\n");
-    changed = insert_line(text, text.size(), (spaced ? "[" : "\n[") + section + "]\n" + line);
+    const bool spaced = text.empty() || text.ends_with("\n\n") || text.ends_with("\n\r\n");
+    const std::string head = "[" + section + "]" + end_of_line;
+    changed = insert_line(text, text.size(), (spaced ? "" : end_of_line) + head + line);
   } else if (const toml::node* node = table->get(key)) {
     const std::size_t begin = document.offset(node->source().begin);
     const std::size_t end = document.offset(node->source().end);
-    changed = text.substr(0, begin) + value + text.substr(end);
+    changed = text.substr(0, begin) + written + text.substr(end);
+  } else if (const auto kept =
+                 find_kept_comment(text, first_line_in(document, *table, section), key);
+             kept && !table->is_inline()) {
+    changed = text.substr(0, kept->begin) + line + text.substr(kept->end);
   } else if (const auto last = last_value_end(document, *table); table->is_inline()) {
     const std::size_t at = last ? *last : document.offset(table->source().begin) + 1;
     changed = text.substr(0, at) + (last ? ", " : "") + line + text.substr(at);
@@ -174,7 +211,11 @@ std::string without_toml_key(const std::string& text, const std::string& section
       !only_blanks(behind.substr(0, comment))) {
     refuse(section, key);
   }
-  return checked(text.substr(0, begin) + text.substr(end),
+  std::vector<std::string> kept = comments_in(std::string_view(text).substr(begin, end - begin));
+  if (comment < behind.size())
+    kept.back() = mark_of(key) + text.substr(value, comment) + kept.back();
+  const std::string indent = text.substr(begin, name - begin);
+  return checked(text.substr(0, begin) + lines_of(kept, indent, text) + text.substr(end),
                  with_section(document.root(), section, std::move(changed)), section, key);
 }
 
@@ -186,8 +227,10 @@ std::string without_toml_section(const std::string& text, const std::string& sec
   wanted.erase(section);
   const std::size_t head = document.offset(table->source().begin);
   const std::size_t last = last_value_end(document, *table).value_or(head);
-  return checked(text.substr(0, document.line_begin(head)) + text.substr(document.line_end(last)),
-                 wanted, section, "");
+  const std::size_t begin = document.line_begin(head), end = document.line_end(last);
+  const auto kept = comments_in(std::string_view(text).substr(begin, end - begin));
+  return checked(text.substr(0, begin) + lines_of(kept, "", text) + text.substr(end), wanted,
+                 section, "");
 }
 
 std::map<std::string, std::string> toml_comments(const std::string& text) {

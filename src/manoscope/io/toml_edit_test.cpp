@@ -58,6 +58,10 @@ TEST(TomlEdit, PutsANewKeyBehindTheLastOfItsSection) {
 
 TEST(TomlEdit, KeepsTheLineEndsOfWindows) {
   EXPECT_EQ(with_toml_value("[a]\r\nb = 1\r\n", "a", "c", "2"), "[a]\r\nb = 1\r\nc = 2\r\n");
+  EXPECT_EQ(with_toml_value("[a]\r\nb = 1\r\n", "c", "d", "[\n  1]"),
+            "[a]\r\nb = 1\r\n\r\n[c]\r\nd = [\r\n  1]\r\n");
+  EXPECT_EQ(with_toml_value("[a]\r\nb = 1\r\n\r\n", "c", "d", "2"),
+            "[a]\r\nb = 1\r\n\r\n[c]\r\nd = 2\r\n");
 }
 
 TEST(TomlEdit, WritesIntoAnInlineSection) {
@@ -67,12 +71,41 @@ TEST(TomlEdit, WritesIntoAnInlineSection) {
 
 TEST(TomlEdit, TakesKeysAndSectionsOut) {
   std::string text = without_toml_key(kText, "channel", "origin");
-  EXPECT_NE(text.find("along the flow\n# between"), std::string::npos);
   EXPECT_EQ(value_of(text, "channel", "origin"), "absent");
   EXPECT_EQ(without_toml_key(kText, "channel", "no"), kText);
   EXPECT_EQ(without_toml_section(kText, "no"), kText);
-  text = without_toml_section(kText, "channel");
-  EXPECT_NE(text.find("manoscope = 1\n\n# between\n\n[rigid]"), std::string::npos) << text;
+}
+
+TEST(TomlEdit, CommentsOfWhatIsTakenOutStayAsLines) {
+  EXPECT_NE(
+      without_toml_section(kText, "channel")
+          .find("manoscope = 1\n\n# a head\n# µ: l, along the flow\n# columns\n# between\n\n["),
+      std::string::npos);
+  const std::string text = without_toml_key(kText, "channel", "origin");
+  EXPECT_NE(text.find("along the flow\n# columns\n# between"), std::string::npos) << text;
+  const std::string quoted = "[a]\nb = [\"# no\", '#\"', \"\"\"\n# no\\\"\"\"\"\"]  # yes\nc = 1\n";
+  EXPECT_EQ(without_toml_key(quoted, "a", "b"), "[a]\n# b =  # yes\nc = 1\n");
+}
+
+TEST(TomlEdit, AKeyComesBackToThePlaceOfItsComment) {
+  // A field that is emptied and filled again leaves the text as it was.
+  const std::string without = without_toml_key(kText, "channel", "length");
+  EXPECT_NE(without.find("# a head\n# length =  # µ: l, along the flow\norigin"), std::string::npos)
+      << without;
+  EXPECT_EQ(toml_comments(without).count("channel.length"), 0u);
+  EXPECT_EQ(with_toml_value(without, "channel", "length", "\"15.5 mm\""), kText);
+  const std::string indented = "a = 1 # top\r\n[s]\r\n\tb = 2# c\r\n\td = 3";
+  std::string text = without_toml_key(without_toml_key(indented, "s", "b"), "", "a");
+  EXPECT_EQ(text, "# a = # top\r\n[s]\r\n\t# b =# c\r\n\td = 3");
+  text = with_toml_value(with_toml_value(text, "s", "b", "2"), "", "a", "1");
+  EXPECT_EQ(text, indented);
+}
+
+TEST(TomlEdit, AnExampleInACommentIsNoPlaceForAKey) {
+  // Only what was kept by without_toml_key() makes room; a value behind the mark is the author's.
+  EXPECT_EQ(
+      with_toml_value("[a]\nx = 1\n# b = 2  # example\n# b =\n[c]\n# b = # other\n", "a", "b", "3"),
+      "[a]\nx = 1\nb = 3\n# b = 2  # example\n# b =\n[c]\n# b = # other\n");
 }
 
 TEST(TomlEdit, RefusesWhatItCannotTakeApart) {
