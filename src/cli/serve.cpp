@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "commands.hpp"
 #include "manoscope/core/error.hpp"
@@ -28,31 +27,28 @@ int port_from(const std::string& text) {
 
 void add_serve(Program& program) {
   struct Args {
-    std::string folder = ".", port = "0";
+    std::string folder = ".", port;
     bool no_browser = false;
   };
   auto args = std::make_shared<Args>();
   Command command = program.command("serve", "The app: edit, measure, compare in a browser");
   command.optional_positional("folder", args->folder, "folder of experiments; the present one");
-  command.option("--port", args->port, "port of this machine to listen at; 0 = any that is free",
-                 false);
+  command.option(
+      "--port", args->port,
+      "port of this machine to listen at; 0 = any that is free; without, the folder's own", false);
   command.flag("--no-browser", args->no_browser, "open no browser");
   command.action([args](const Context& context) {
     serve::ServerOptions options;
     options.folder = args->folder;
-    options.port = port_from(args->port);
+    if (!args->port.empty()) options.port = port_from(args->port);
     options.program = std::filesystem::read_symlink("/proc/self/exe").string();
     serve::Server server(options);
     const std::string url = server.url();
     print(context.json ? nlohmann::json{{"url", url}, {"port", server.port()}}.dump() + "\n"
                        : url + "\n");
     remark(context, "This address works once, in one browser, on this machine. Ctrl-C ends.");
-    std::thread opener;
-    if (!args->no_browser && !context.json && isatty(STDOUT_FILENO) == 1) {
-      opener = std::thread([url] { serve::open_browser(url); });
-    }
+    if (!args->no_browser && !context.json && isatty(STDOUT_FILENO) == 1) serve::open_browser(url);
     server.run(context.monitor);
-    if (opener.joinable()) opener.join();
   });
 }
 

@@ -27,9 +27,10 @@ outlet_pressure = "300 Pa"
 class Served:
     """A server of a folder, and a browser that was let in."""
 
-    def __init__(self, folder, *options):
+    def __init__(self, folder, *options, before=None):
         self.process = subprocess.Popen([PROGRAM, "serve", folder, "--json", "--no-browser", *options],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                        preexec_fn=before)
         told = json.loads(self.process.stdout.readline())
         self.port, self.url = told["port"], told["url"]
         self.cookie = ""
@@ -85,11 +86,41 @@ def children_of(parent):
     return children
 
 
+def runs(process):
+    try:
+        return pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
 class Words(Folder):
     def test_ends_at_ctrl_c_as_if_it_was_asked_to(self):
         served = Served(self.folder)
         self.addCleanup(served.close)
         self.assertEqual(served.end(), 0)
+
+    def test_ends_with_its_terminal(self):
+        served = Served(self.folder)
+        self.addCleanup(served.close)
+        served.process.send_signal(signal.SIGHUP)
+        served.process.send_signal(signal.SIGHUP)  # shell and system both tell of it
+        served.process.communicate(timeout=30)
+        self.assertEqual(served.process.returncode, 0)
+
+    def test_goes_on_without_its_terminal_where_it_was_told_to(self):
+        served = Served(self.folder, before=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.addCleanup(served.close)
+        served.process.send_signal(signal.SIGHUP)
+        self.assertEqual(served.ask("GET", "/api/state")[0].status, 200)
+
+    def test_a_folder_is_served_at_the_same_port_again(self):
+        ports = set()
+        for _ in range(2):
+            served = Served(self.folder)
+            self.addCleanup(served.close)
+            ports.add(served.port)
+            served.end()
+        self.assertEqual(len(ports), 1)
 
     def test_a_folder_that_is_not_there_is_the_users_fault(self):
         self.assertIn("absent", run("serve", self.folder / "absent", check_code=2).stderr)
@@ -167,6 +198,22 @@ class Measuring(Folder):
         self.assertEqual(served.end(), 0)
         for child in children:
             self.assertFalse(os.path.exists(f"/proc/{child}"), child)
+
+    def test_a_server_that_is_killed_leaves_no_measurement_behind(self):
+        served = self.serve()
+        served.ask("POST", "/api/jobs", {"experiment": "experiment/experiment.toml", "output": "cut"})
+        while not served.job()["stage"]:
+            time.sleep(0.02)
+        children = children_of(served.process.pid)
+        self.assertTrue(children)
+        served.process.kill()
+        served.process.communicate(timeout=30)
+        for _ in range(300):
+            if not any(runs(child) for child in children):
+                break
+            time.sleep(0.1)
+        self.assertFalse([child for child in children if runs(child)])
+        self.assertFalse((self.out / "cut/result.nc").exists())
 
     def test_a_measurement_that_is_killed_takes_nothing_else_down(self):
         served = self.serve()

@@ -1,63 +1,12 @@
-// The app without a socket: what requests that passed the guard are answered with.
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
+// What requests that passed the guard are answered with.
 #include "manoscope/core/error.hpp"
 #include "manoscope/results/write.hpp"
-#include "manoscope/serve/app.hpp"
 #include "manoscope/serve/job_api.hpp"
-#include "manoscope/serve/test_experiment.hpp"
+#include "manoscope/serve/test_api.hpp"
 #include "tests/support/example_measurement.hpp"
 
 namespace manoscope::serve {
 namespace {
-
-using nlohmann::json;
-
-class ApiTest : public testing::Test {
- protected:
-  ApiTest() : app(made(), "/bin/true", [](const json&) {}) {}
-
-  std::filesystem::path made() {
-    std::filesystem::create_directories(outer / "served");
-    write_experiment_folder(outer / "served");
-    return outer / "served";
-  }
-  std::filesystem::path top() const { return outer / "served"; }
-
-  Reply ask(Method method, const std::string& target, const json& body = nullptr,
-            const std::string& if_match = "", const std::string& if_none_match = "") {
-    Request request{method, *parse_address(target), if_match, if_none_match,
-                    body.is_null() ? "" : body.dump()};
-    const Found found = find_route(method, request.address.parts);
-    EXPECT_TRUE(found.route) << target;
-    return app.answer(*found.route, request, {});
-  }
-  json get(const std::string& target, unsigned status = 200) {
-    const Reply reply = ask(Method::get, target);
-    EXPECT_EQ(reply.status, status) << target << reply.body;
-    return json::parse(reply.body);
-  }
-  json post(const std::string& target, const json& body, unsigned status = 200) {
-    const Reply reply = ask(Method::post, target, body);
-    EXPECT_EQ(reply.status, status) << target << reply.body;
-    return json::parse(reply.body);
-  }
-  json put(const json& body, const std::string& revision, unsigned status = 200) {
-    const Reply reply =
-        ask(Method::put, "/api/experiment?file=s1/experiment.toml", body, '"' + revision + '"');
-    EXPECT_EQ(reply.status, status) << reply.body;
-    return json::parse(reply.body);
-  }
-  json experiment() { return get("/api/experiment?file=s1/experiment.toml"); }
-  json check(const json& form) {
-    return post("/api/check", {{"file", "s1/experiment.toml"}, {"form", form}});
-  }
-
-  test_support::TemporaryFolder outer;
-  App app;
-};
 
 TEST_F(ApiTest, StateTellsExperimentsAndResults) {
   write_text(top() / "s1-result/result.nc", "x");
@@ -144,89 +93,6 @@ TEST_F(ApiTest, TellsWhereATextCeasesToBeToml) {
   EXPECT_TRUE(checked["form"].is_null());
   ASSERT_EQ(checked["faults"].size(), 1u);
   EXPECT_EQ(checked["faults"][0]["line"], 2);
-}
-
-TEST_F(ApiTest, WritesInPlaceAndOnlyWhatDiffers) {
-  json e = experiment();
-  e["form"]["channel"]["length"] = "1.3 mm";
-  e["form"]["wall"]["thickness"] = "0.2 um";
-  e["form"]["hydrostatic"]["rows"][1][1] = "510";
-  const json written = put({{"form", e["form"]}}, e["revision"]);
-  std::string toml = kToml;
-  toml.replace(toml.find("1.2 mm"), 6, "1.3 mm");
-  EXPECT_EQ(read_text(top() / "s1/experiment.toml"), toml + "\n[wall]\nthickness = \"0.2 um\"\n");
-  std::string list = kHydrostatic;
-  list.replace(list.find("500"), 3, "510");
-  EXPECT_EQ(read_text(top() / "s1/hydrostatic.csv"), list);
-  EXPECT_NE(written["revision"], e["revision"]);
-  EXPECT_EQ(written["form"]["wall"]["thickness"], "0.2 um");
-}
-
-TEST_F(ApiTest, WritesNothingOverWhatChangedInTheMeantime) {
-  const json e = experiment();
-  for (const char* file : {"experiment.toml", "flow.csv"}) {
-    const std::string before = read_text(top() / "s1" / file);
-    write_text(top() / "s1" / file, before + "# by an editor\n");
-    const json answer = put({{"form", e["form"]}}, e["revision"], 412);
-    EXPECT_TRUE(answer.contains("error"));
-    EXPECT_NE(answer["experiment"]["revision"], e["revision"]);
-    write_text(top() / "s1" / file, before);
-  }
-  put({{"form", e["form"]}}, e["revision"]);
-  const Reply reply =
-      ask(Method::put, "/api/experiment?file=s1/experiment.toml", {{"form", e["form"]}});
-  EXPECT_EQ(reply.status, 428u);
-}
-
-TEST_F(ApiTest, MakesANewExperimentAndNewLists) {
-  const json form = {{"name", "new"},
-                     {"hydrostatic",
-                      {{"file", "levels.csv"},
-                       {"columns", {"map", "pressure [Pa]"}},
-                       {"rows", json::array({{"../s1/h0.gsf", "0"}})}}}};
-  const std::string target = "/api/experiment?file=s2/experiment.toml";
-  Reply reply = ask(Method::put, target, {{"form", form}}, "", "*");
-  EXPECT_EQ(reply.status, 201u) << reply.body;
-  EXPECT_EQ(read_text(top() / "s2/experiment.toml"),
-            "manoscope = 1\nname = \"new\"\n\n[hydrostatic]\nlist = \"levels.csv\"\n");
-  EXPECT_EQ(read_text(top() / "s2/levels.csv"), "map,pressure [Pa]\n../s1/h0.gsf,0\n");
-  reply = ask(Method::put, target, {{"form", form}}, "", "*");
-  EXPECT_EQ(reply.status, 412u);
-}
-
-TEST_F(ApiTest, ANewListReplacesNoFile) {
-  json e = experiment();
-  write_text(top() / "s1/mine.csv", "my table");
-  e["form"]["flow"]["file"] = "mine.csv";
-  put({{"form", e["form"]}}, e["revision"], 409);
-  EXPECT_EQ(read_text(top() / "s1/mine.csv"), "my table");
-  for (const char* name : {"../../out.csv", "/tmp/out.csv", "f0.gsf", "../.out.csv"}) {
-    e["form"]["flow"]["file"] = name;
-    put({{"form", e["form"]}}, e["revision"], 422);
-  }
-  EXPECT_EQ(experiment()["revision"], e["revision"]);
-}
-
-TEST_F(ApiTest, NamesThatLeadOutAreFaultsAndAreNotOpened) {
-  write_text(outer / "secret.csv", "map,flow_rate [mL/min]\nsecret word,x\n");
-  json e = experiment();
-  e["form"]["flow"]["rows"][0][0] = "../../secret.csv";
-  json checked = check(e["form"]);
-  ASSERT_EQ(checked["faults"].size(), 1u);
-  EXPECT_EQ(checked["faults"][0]["key"], "flow.map");
-  EXPECT_EQ(checked["faults"][0]["row"], 0);
-  std::string toml = kToml;
-  toml.replace(toml.find("flow.csv"), 8, "../../secret.csv");
-  checked = post("/api/check", {{"file", "s1/experiment.toml"}, {"text", toml}});
-  ASSERT_EQ(checked["faults"].size(), 1u);
-  EXPECT_EQ(checked["faults"][0]["key"], "flow.list");
-  EXPECT_EQ(checked.dump().find("secret word"), std::string::npos);
-  std::filesystem::create_symlink(outer / "secret.csv", top() / "s1/link.csv");
-  toml = kToml;
-  toml.replace(toml.find("flow.csv"), 8, "link.csv");
-  checked = post("/api/check", {{"file", "s1/experiment.toml"}, {"text", toml}});
-  ASSERT_EQ(checked["faults"].size(), 1u);
-  EXPECT_EQ(checked.dump().find("secret word"), std::string::npos);
 }
 
 TEST_F(ApiTest, DraftsAnExperimentFromMaps) {

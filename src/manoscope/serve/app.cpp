@@ -84,9 +84,10 @@ Reply upload_reply(const Upload& upload) {
   return json_reply({{"file", upload.file()}, {"size", upload.size()}}, 201);
 }
 
-std::string App::greeting() const {
-  return json{{"type", "hello"}, {"job", jobs_.current()}}.dump(-1, ' ', false,
-                                                                json::error_handler_t::replace);
+void App::greet(const std::function<void(std::string)>& say) const {
+  jobs_.look([&](const json& job) {
+    say(json{{"type", "hello"}, {"job", job}}.dump(-1, ' ', false, json::error_handler_t::replace));
+  });
 }
 
 std::string App::file_event() {

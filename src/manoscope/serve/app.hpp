@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -29,8 +30,9 @@ class App {
   /// @throws ApiError, InputError.
   std::unique_ptr<Upload> begin_upload(const Address& address) const;
 
-  /// First words to a page that listens to events.
-  std::string greeting() const;
+  /// Hands over the first words to a page that listens to events: no event of the job comes
+  /// between what they tell and the call.
+  void greet(const std::function<void(std::string)>& say) const;
   /// An event if files changed since the last call, else "".
   std::string file_event();
 

@@ -12,10 +12,11 @@ bool open_browser(const std::string& url) {
     return value != nullptr && *value != '\0';
   };
   if (!is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY")) return false;
-  ChildProcess::Options options;
-  options.wall_seconds = 10.0;
-  auto opener = ChildProcess::start({"xdg-open", url}, options);
-  return opener && opener->wait().succeeded();
+  if (!find_program("xdg-open")) return false;
+  // The shell ends at once and leaves the opener behind, which may be the browser itself.
+  auto shell = ChildProcess::start(
+      {"/bin/sh", "-c", "setsid xdg-open \"$1\" </dev/null >/dev/null 2>&1 &", "sh", url}, {});
+  return shell && shell->wait().succeeded();
 }
 
 }  // namespace manoscope::serve

@@ -42,10 +42,14 @@ class EventStream : public std::enable_shared_from_this<EventStream> {
     id_ = shared_.listeners.add([weak = weak_from_this()](const auto& text) {
       if (const auto self = weak.lock()) self->send(text);
     });
-    // What is running now, asked for on a pool as it may wait for a lock.
-    asio::post(*shared_.quick, [self = shared_from_this()] {
-      auto text = std::make_shared<const std::string>(self->shared_.app->greeting());
-      asio::post(*self->shared_.io, [self, text] { self->send(text); });
+    // What is running now, asked for on a pool as it may wait for a lock. It gets in line with the
+    // events of the job, and takes the pool's hold of this object with it.
+    asio::post(*shared_.quick, [self = shared_from_this()]() mutable {
+      Shared& shared = self->shared_;
+      shared.app->greet([&](std::string words) {
+        auto text = std::make_shared<const std::string>(std::move(words));
+        asio::post(*shared.io, [self = std::move(self), text] { self->send(text); });
+      });
     });
     read();
   }

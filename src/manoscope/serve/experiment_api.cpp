@@ -74,6 +74,16 @@ json experiment_json(const Folder& folder, const ExperimentDraft& draft, const j
   return answer;
 }
 
+/// 412 with what is on the disk.
+Reply changed_reply(const Folder& folder, const ExperimentDraft& there) {
+  json answer = {{"error",
+                  {{"where", there.file},
+                   {"found", "the file or one of its lists has changed in the meantime"},
+                   {"mend", "Look at what is there now, then write again"}}}};
+  answer["experiment"] = experiment_json(folder, there, revision_of(there));
+  return json_reply(answer, 412);
+}
+
 [[noreturn]] void refuse_missing(const std::string& file) {
   throw ApiError(404, file, "there is no such file", "Draft an experiment from a folder of maps");
 }
@@ -85,14 +95,17 @@ ExperimentDraft draft_from(const Folder& folder, const std::string& file,
   ExperimentDraft draft = old.value_or(ExperimentDraft{file, {"manoscope = 1\n", {}}});
   const auto form = object.find("form"), text = object.find("text");
   if (form != object.end() && !form->is_null()) {
-    draft.texts = experiment::apply_form(draft.texts, form_from(*form));
+    experiment::Form wanted = form_from(*form);
+    adopt_lists(folder, draft, wanted);
+    draft.texts = experiment::apply_form(draft.texts, wanted);
   } else if (text != object.end() && text->is_string()) {
     draft.texts.toml = text->get<std::string>();
     draft.texts.lists = read_lists(folder, file, draft.texts.toml);
     const auto lists = object.find("lists");
     if (lists != object.end() && !lists->is_null()) {
+      if (!lists->is_object()) throw wrong_kind("lists", "an object");
       for (const auto& [name, list] : lists->items()) {
-        if (draft.texts.lists.contains(name)) draft.texts.lists[name] = list.get<std::string>();
+        if (draft.texts.lists.contains(name)) draft.texts.lists[name] = text_of(list, name);
       }
     }
   } else {
@@ -128,15 +141,16 @@ Reply ExperimentApi::write(const Request& request) {
   }
   if (!anew && !old) refuse_missing(file);
   if (anew ? bool(old) : request.if_match != '"' + revision_of(*old) + '"') {
-    json answer = {{"error",
-                    {{"where", file},
-                     {"found", "the file or one of its lists has changed in the meantime"},
-                     {"mend", "Look at what is there now, then write again"}}}};
-    answer["experiment"] = experiment_json(*folder_, *old, revision_of(*old));
-    return json_reply(answer, 412);
+    return changed_reply(*folder_, *old);
   }
   const ExperimentDraft draft = draft_from(*folder_, file, old, parse_object(request.body));
-  write_experiment(*folder_, old, draft);
+  try {
+    write_experiment(*folder_, old, draft, own_lists_);
+  } catch (const ApiError& error) {
+    const auto there = error.status() == 412 ? load_experiment(*folder_, file) : std::nullopt;
+    if (!there) throw;
+    return changed_reply(*folder_, *there);
+  }
   const auto written = load_experiment(*folder_, file);
   if (!written) refuse_missing(file);
   return json_reply(experiment_json(*folder_, *written, revision_of(*written)), old ? 200 : 201);
@@ -158,7 +172,7 @@ Reply ExperimentApi::draft(const Request& request) {
                        "Copy the file into the folder");
     }
   }
-  const std::scoped_lock lock(writing_);
+  // It replaces nothing, and takes as long as the maps: writing does not wait for it.
   const experiment::Draft draft = experiment::draft_experiment(path);
   json written = json::array();
   for (const auto& file : draft.written) {

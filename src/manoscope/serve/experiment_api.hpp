@@ -31,6 +31,7 @@ class ExperimentApi {
  private:
   const Folder* folder_;
   std::mutex writing_;
+  OwnLists own_lists_;  ///< guarded by `writing_`
 };
 
 }  // namespace manoscope::serve

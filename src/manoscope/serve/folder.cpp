@@ -6,6 +6,7 @@
 #include <sys/syscall.h>
 
 #include <cerrno>
+#include <string>
 #include <system_error>
 
 #include "manoscope/core/error.hpp"
@@ -61,6 +62,20 @@ Descriptor Folder::open(const std::string& relative, Kind kind) const {
 bool Folder::leads_out(const std::string& relative) const {
   const Descriptor opened(open_beneath(descriptor_.number(), relative, O_PATH));
   return !opened && errno != ENOENT && errno != ENOTDIR;
+}
+
+std::string Folder::without_links(const std::string& relative) const {
+  const Descriptor opened(open_beneath(descriptor_.number(), relative, O_PATH));
+  if (!opened && (errno == ENOENT || errno == ENOTDIR)) return relative;
+  std::error_code error;
+  const auto target =
+      std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(opened.number()), error);
+  std::string inside = target.lexically_relative(path_).string();
+  if (!opened || error || inside.empty() || inside.starts_with("..")) {
+    throw InputError(relative, "lies outside the folder that is served",
+                     "Copy it into the folder, or serve the folder above");
+  }
+  return inside;
 }
 
 Descriptor Folder::make_folders(const std::vector<std::string>& parts) const {

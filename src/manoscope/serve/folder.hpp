@@ -28,10 +28,14 @@ class Folder {
   Descriptor open(const std::string& relative, Kind kind) const;
   bool has(const std::string& relative, Kind kind) const { return bool(open(relative, kind)); }
   /// Whether a path leads out of the folder, or round in circles; not so where nothing is there
-  /// yet.
+  /// yet. The path may hold `..`: it means what it means to the kernel, also behind a link.
   bool leads_out(const std::string& relative) const;
-  /// The path for those who open files by name. Whoever can swap files for links in the folder at
-  /// the same time can read them anyway.
+  /// Where the links of a path end, beneath the folder; the path itself where nothing is there.
+  /// @throws InputError if that is outside.
+  std::string without_links(const std::string& relative) const;
+  /// The path for those who open files by name: the readers of maps and results, and the
+  /// measurement. It was looked at before, and is followed again then: in a folder that other users
+  /// may write to, they can put a link to a file of this user in its place between the two.
   std::filesystem::path absolute(const std::string& relative) const {
     return relative.empty() ? path_ : path_ / relative;
   }

@@ -65,6 +65,16 @@ TEST_F(FolderTest, NoPathAndNoLinkLeadsOut) {
   EXPECT_FALSE(folder.leads_out("a/b.csv"));
 }
 
+TEST_F(FolderTest, TellsWhereLinksEnd) {
+  fs::create_symlink("a/b.csv", outer / "served/inner.csv");
+  fs::create_symlink("../secret.csv", outer / "served/out.csv");
+  EXPECT_EQ(folder.without_links("inner.csv"), "a/b.csv");
+  EXPECT_EQ(folder.without_links("a/../inner.csv"), "a/b.csv");
+  EXPECT_EQ(folder.without_links("a/b.csv"), "a/b.csv");
+  EXPECT_EQ(folder.without_links("new/c.csv"), "new/c.csv");
+  EXPECT_THROW(folder.without_links("out.csv"), InputError);
+}
+
 TEST_F(FolderTest, LinksWithinAreFollowed) {
   fs::create_symlink("a/b.csv", outer / "served/inner.csv");
   EXPECT_TRUE(folder.has("inner.csv", Folder::Kind::file));
@@ -97,6 +107,32 @@ TEST_F(FolderTest, ScansTellWhatChanged) {
   const Scan after = scan(folder);
   EXPECT_EQ(changed_files(before, after), (std::vector<std::string>{"a/b.csv", "new.csv"}));
   EXPECT_EQ(changed_files(after, before), (std::vector<std::string>{"a/b.csv", "new.csv"}));
+}
+
+TEST_F(FolderTest, WhatLiesDeepInOneBranchHidesNoOther) {
+  // By name the deep branch comes first.
+  write(outer / "served/aaa/1/2/3/4/5/6/7/deep.csv", "");
+  write(outer / "served/s1/experiment.toml", "");
+  const Scan found = scan(folder);
+  EXPECT_TRUE(found.truncated);
+  EXPECT_TRUE(found.files.contains("s1/experiment.toml"));
+  EXPECT_TRUE(found.files.contains("a/b.csv"));
+  EXPECT_FALSE(found.files.contains("aaa/1/2/3/4/5/6/7/deep.csv"));
+}
+
+TEST_F(FolderTest, ExperimentsAreFoundBesideThousandsOfFiles) {
+  fs::create_directories(outer / "served/many");
+  for (int i = 0; i < 5100; ++i) {
+    std::ofstream(outer / "served/many" / (std::to_string(i) + ".gsf"));
+  }
+  write(outer / "served/z/y/experiment.toml", "");
+  write(outer / "served/z/y/result.nc", "");
+  write(outer / "served/z/y/usual.csv", "");
+  const Scan found = scan(folder);
+  EXPECT_TRUE(found.truncated);
+  EXPECT_TRUE(found.files.contains("z/y/experiment.toml"));
+  EXPECT_TRUE(found.files.contains("z/y/result.nc"));
+  EXPECT_EQ(found.files.size(), 5002u);
 }
 
 TEST_F(FolderTest, ScansEndAtALink) {

@@ -29,10 +29,18 @@ json list_json(const std::optional<FormList>& list) {
 std::optional<FormList> list_from(const json& form, const char* name) {
   const auto found = form.find(name);
   if (found == form.end() || found->is_null()) return std::nullopt;
+  if (!found->is_object()) throw wrong_kind(name, "an object");
   FormList list;
   list.file = text_in(*found, "file", "");
-  list.columns = found->at("columns").get<std::vector<std::string>>();
-  list.rows = found->at("rows").get<std::vector<std::vector<std::string>>>();
+  const auto part = [&](const char* key) {
+    const auto there = found->find(key);
+    if (there == found->end()) throw wrong_kind(fmt::format("{}.{}", name, key), "there");
+    return *there;
+  };
+  list.columns = texts_of(part("columns"), fmt::format("{}.columns", name));
+  const json rows = part("rows");
+  if (!rows.is_array()) throw wrong_kind(fmt::format("{}.rows", name), "a list of rows");
+  for (const json& row : rows) list.rows.push_back(texts_of(row, fmt::format("{}.rows", name)));
   return list;
 }
 
@@ -91,10 +99,11 @@ Form form_from(const json& object) {
     const auto section = top ? object.end() : object.find(key.section);
     if (!top && (section == object.end() || section->is_null())) continue;
     const json& table = top ? object : *section;
+    if (!table.is_object()) throw wrong_kind(key.section, "an object");
     const auto value = table.find(key.key);
     if (value == table.end() || value->is_null()) continue;
-    form.values[key.name()] = key.kind == FormKind::pair ? value->get<std::vector<std::string>>()
-                                                         : std::vector{value->get<std::string>()};
+    form.values[key.name()] = key.kind == FormKind::pair ? texts_of(*value, key.name())
+                                                         : std::vector{text_of(*value, key.name())};
   }
   form.hydrostatic = list_from(object, "hydrostatic");
   form.flow = list_from(object, "flow");

@@ -61,10 +61,17 @@ bool Guard::is_known(const Head& head) const {
   return value && same_secret(*value, key_);
 }
 
+/// Whether a program of this user sent it, or of root, who may do all this user may and who hands
+/// over what the browser of a Windows around this Linux asks for. Not where the system does not
+/// tell.
+bool Guard::is_ours(const Head& head) {
+  constexpr uid_t kRoot = 0;
+  const auto user = head.peer_user ? head.peer_user() : std::nullopt;
+  return user == ::geteuid() || user == kRoot;
+}
+
 bool Guard::enters(const Head& head, const std::string& token) const {
-  if (is_known(head)) return true;
-  return !token_used_ && same_secret(token, token_) &&
-         (!head.peer_user || *head.peer_user == ::geteuid());
+  return (is_known(head) || (!token_used_ && same_secret(token, token_))) && is_ours(head);
 }
 
 std::optional<Refusal> Guard::check_form(const Head& head) const {
@@ -98,6 +105,10 @@ std::optional<Refusal> Guard::check_sender(const Head& head, const Route& route)
   if (!is_known(head)) {
     return Refusal{401, "this browser has not been let in",
                    "Open the address that `manoscope serve` printed; start it again for a new one"};
+  }
+  if (!is_ours(head)) {
+    return Refusal{403, "a request from a program of another user, or of one that is not told",
+                   "Use a browser of the user who started `manoscope serve`, on this machine"};
   }
   const bool writes = route.method != Method::get || route.task == Task::events;
   if (writes && (head.origin.size() != 1 || head.origin[0] != "http://" + head.host[0])) {

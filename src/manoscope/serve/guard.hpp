@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,8 +17,10 @@ struct Head {
   bool upgrades = false;  ///< asks for a WebSocket
   std::string target;
   std::vector<std::string> host, origin, cookie, content_length, transfer_encoding, content_type;
-  std::string fetch_site;             ///< Sec-Fetch-Site
-  std::optional<unsigned> peer_user;  ///< whose program sent it, where that is known
+  std::string fetch_site;  ///< Sec-Fetch-Site
+  /// Whose program sent it, where the system tells. It costs a look at every connection of the
+  /// machine: asked of nobody but who knows the token or the cookie.
+  std::function<std::optional<unsigned>()> peer_user;
 };
 
 /// Why a request goes no further.
@@ -39,7 +42,8 @@ struct Admission {
 /// A browser runs pages of many masters, and each of them can send requests here. Told apart they
 /// are by the Host (a foreign name that was made to point here), the Origin (a foreign page that
 /// writes), and a cookie that only a page of this server sends. It is given out once, for the token
-/// in the address that was printed, to a program of the same user.
+/// in the address that was printed, to a program of the same user. A browser shows its cookie to
+/// every port of this machine, other users' too: it holds for the same user alone.
 class Guard {
  public:
   Guard(std::uint16_t port, Limits limits);
@@ -55,6 +59,7 @@ class Guard {
   std::optional<Refusal> check_body(const Head& head, const Route& route) const;
   std::optional<Refusal> check_sender(const Head& head, const Route& route) const;
   bool is_known(const Head& head) const;
+  static bool is_ours(const Head& head);
   bool enters(const Head& head, const std::string& token) const;
 
   std::uint16_t port_;

@@ -19,6 +19,7 @@ class GuardTest : public testing::Test {
     head.method = method;
     head.target = target;
     head.host = {"127.0.0.1:4711"};
+    head.peer_user = [] { return ::geteuid(); };
     const std::string cookie = guard.cookie();
     head.cookie = {"other=1; " + cookie.substr(0, cookie.find(';'))};
     if (method != Method::get) head.origin = {"http://127.0.0.1:4711"};
@@ -71,13 +72,54 @@ TEST_F(GuardTest, WrongTokenLetsNobodyInAndSpendsNothing) {
   EXPECT_TRUE(guard.admit(wrong).enters);
 }
 
-TEST_F(GuardTest, TokenIsForTheUserOfTheServerAlone) {
+TEST_F(GuardTest, TokenIsForTheUserOfTheServerAndRootAlone) {
   Head other = head(Method::get, "/?token=" + guard.token());
   other.cookie.clear();
-  other.peer_user = ::geteuid() + 1;
+  for (const std::optional<unsigned> user :
+       {std::optional(::geteuid() + 1), std::optional<unsigned>()}) {
+    other.peer_user = [user] { return user; };
+    EXPECT_EQ(status(other), 403u) << "another user's program, or nobody knows whose";
+  }
+  other.peer_user = nullptr;
   EXPECT_EQ(status(other), 403u);
-  other.peer_user = ::geteuid();
-  EXPECT_TRUE(guard.admit(other).enters);
+  for (const unsigned user : {::geteuid(), 0U}) {
+    Guard fresh(kPort, Limits{});
+    other.target = "/?token=" + fresh.token();
+    other.peer_user = [user] { return user; };
+    EXPECT_TRUE(fresh.admit(other).enters);
+  }
+}
+
+TEST_F(GuardTest, TokenIsTheSameInEveryEncoding) {
+  // What the address is decoded to decides, not how it is spelled.
+  for (const char* name : {"token", "%74oken", "tok%65n", "%74%6f%6B%65%6E"}) {
+    Head other = head(Method::get, std::string("/?") + name + "=" + guard.token());
+    other.cookie.clear();
+    other.peer_user = [] { return ::geteuid() + 1; };
+    EXPECT_EQ(status(other), 403u) << name;
+    other.peer_user = nullptr;
+    EXPECT_EQ(status(other), 403u) << name;
+  }
+}
+
+TEST_F(GuardTest, CookieIsForTheUserOfTheServerAlone) {
+  // A browser sends it to every port of 127.0.0.1, and another user may listen at one.
+  Head stolen = head(Method::get, "/api/state");
+  stolen.peer_user = [] { return ::geteuid() + 1; };
+  EXPECT_EQ(status(stolen), 403u);
+  stolen.target = "/?token=" + guard.token();
+  EXPECT_EQ(status(stolen), 403u);
+}
+
+TEST_F(GuardTest, AsksForTheUserOfNobodyWithoutASecret) {
+  int n_asked = 0;
+  Head stranger = head(Method::get, "/?token=" + std::string(64, '0'));
+  stranger.cookie.clear();
+  stranger.peer_user = [&] { return ++n_asked, ::geteuid(); };
+  EXPECT_EQ(status(stranger), 403u);
+  stranger.target = "/api/state?token=" + guard.token();
+  EXPECT_EQ(status(stranger), 401u);
+  EXPECT_EQ(n_asked, 0);
 }
 
 TEST_F(GuardTest, TokenOpensNothingButThePage) {

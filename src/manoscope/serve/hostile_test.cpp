@@ -20,7 +20,7 @@ class HostileTest : public testing::Test {
 
   ServerOptions options() {
     fs::create_directories(outer / "served");
-    std::ofstream(outer / "secret.csv") << "secret";
+    std::ofstream(outer / "secret.csv") << "not for you";
     std::ofstream(outer / "served/fine.csv") << "fine";
     fs::create_symlink("../secret.csv", outer / "served/link.csv");
     fs::create_symlink("/etc", outer / "served/etc");
@@ -29,6 +29,7 @@ class HostileTest : public testing::Test {
     options.limits.header_seconds = 0.5;
     options.limits.idle_seconds = 1.0;
     options.limits.linger_seconds = 0.3;
+    options.limits.upload_bytes = 1 << 20;
     return options;
   }
   /// The server is there and answers an honest request.
@@ -64,7 +65,7 @@ TEST_F(HostileTest, NoWayOutInAnyEncoding) {
         "/api/files?folder=..", "/api/files?folder=etc", "/api/result?folder=../x"}) {
     const Answer answer = server.ask("GET", target);
     EXPECT_TRUE(answer.status == 404 || answer.status == 400) << target << answer.status;
-    EXPECT_EQ(answer.body.find("secret\n"), std::string::npos);
+    EXPECT_EQ(answer.body.find("not for you"), std::string::npos);
   }
   EXPECT_EQ(server.ask("GET", "/results/link.csv").status, 404);
   EXPECT_EQ(server.ask("GET", "/api/experiment?file=../x.toml").status, 400);
@@ -128,6 +129,34 @@ TEST_F(HostileTest, ChunkedBodyOfTwiceTheLimit) {
             413);
   expect_alive();
   EXPECT_LT(resident_megabytes() - before, 20.0) << "one body of 4 MB at a time, and the allocator";
+}
+
+TEST_F(HostileTest, ChunkedUploadOfTwiceTheLimit) {
+  Connection connection(server.port());
+  connection.send(server.head("PUT", "/api/files/big.gsf") + "Transfer-Encoding: chunked\r\n\r\n");
+  const std::string chunk = "10000\r\n" + std::string(0x10000, 'x') + "\r\n";
+  bool taken = true;
+  for (int n = 0; n < 32 && taken; ++n) taken = connection.send(chunk);  // 2 MB
+  if (taken) connection.send("0\r\n\r\n");
+  EXPECT_EQ(connection.answer().status, 413);
+  EXPECT_TRUE(connection.is_closed());
+  for (const auto& entry : fs::directory_iterator(outer / "served")) {
+    EXPECT_EQ(entry.path().filename().string().find(".manoscope"), std::string::npos) << entry;
+  }
+  EXPECT_EQ(server.ask("GET", "/results/big.csv").status, 404);
+  expect_alive();
+}
+
+TEST_F(HostileTest, AUsedTokenIsUsedInEveryEncoding) {
+  const std::string token = server.url().substr(server.url().find('=') + 1);
+  for (const char* name : {"%74oken", "t%6Fken"}) {
+    EXPECT_EQ(server
+                  .send(std::string("GET /?") + name + "=" + token +
+                        " HTTP/1.1\r\nHost: " + server.host() + "\r\n\r\n")
+                  .status,
+              403);
+  }
+  expect_alive();
 }
 
 TEST_F(HostileTest, OneChunkOfAbsurdSize) {

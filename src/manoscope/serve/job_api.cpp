@@ -38,6 +38,11 @@ JobOrder order_from(const Folder& folder, const std::string& program, const std:
   if (!folder.has(order.experiment, Folder::Kind::file)) {
     throw ApiError(404, order.experiment, "there is no such file", "Write the experiment first");
   }
+  if (const auto draft = load_experiment(folder, order.experiment)) {
+    // The process opens what the names say, wherever that is.
+    auto outside = names_that_lead_out(folder, *draft, experiment::read_form(draft->texts));
+    if (!outside.empty()) throw InputErrors(std::move(outside));
+  }
   order.output = text_in(object, "output", usual_output(order.experiment));
   const auto parts = relative_parts(order.output);
   if (!parts || parts->empty() || folder.leads_out(order.output)) {
@@ -56,8 +61,9 @@ JobOrder order_from(const Folder& folder, const std::string& program, const std:
   if (options == object.end() || options->is_null()) return order;
   pipeline::MeasureOptions measure;
   report::ReportOptions report;
+  if (!options->is_object()) throw wrong_kind("options", "an object");
   for (const auto& [name, value] : options->items()) {
-    const auto text = value.get<std::string>();
+    const std::string text = text_of(value, name);
     if (is_report_option(name)) {
       set_option(report, name, text, name);
     } else {

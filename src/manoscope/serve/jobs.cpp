@@ -6,7 +6,6 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "manoscope/core/child_process.hpp"
 #include "manoscope/serve/api_error.hpp"
 
 namespace manoscope::serve {
@@ -72,8 +71,14 @@ json Jobs::json_of(const Job& job) const {
 }
 
 json Jobs::current() const {
+  json job;
+  look([&](const json& told) { job = told; });
+  return job;
+}
+
+void Jobs::look(const std::function<void(const json& job)>& see) const {
   const std::scoped_lock lock(mutex_);
-  return job_ ? json_of(*job_) : json(nullptr);
+  see(job_ ? json_of(*job_) : json(nullptr));
 }
 
 json Jobs::start(const JobOrder& order) {
@@ -103,31 +108,41 @@ json Jobs::start(const JobOrder& order) {
   return told;
 }
 
-void Jobs::run(const JobOrder& order) {
+/// Starts the process, tells its lines and waits for it.
+void Jobs::measure(const JobOrder& order, ChildEnd& end) {
   constexpr double kLongest = 7.0 * 24.0 * 3600.0;  // s: what runs longer hangs
   ChildProcess::Options options;
   options.wall_seconds = kLongest;
   options.messages_too = true;
+  options.environment = {variable_of_parent()};
+  auto child = ChildProcess::start(order.words, options);
+  if (!child) return take_line("the program cannot be started: " + order.words.front());
+  {
+    const std::scoped_lock lock(mutex_);
+    process_ = child->id();
+    if (cancelled_) ::kill(process_, SIGINT);
+  }
+  // Nothing of the process may end the server, and it can be cancelled until it is gone.
+  std::exception_ptr failure;
+  try {
+    each_line(*child, [this](const std::string& line) { take_line(line); });
+    child->await_end();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    process_ = 0;
+  }
+  if (failure) std::rethrow_exception(failure);
+  end = child->wait();
+}
+
+void Jobs::run(const JobOrder& order) {
   ChildEnd end;
   try {
-    auto child = ChildProcess::start(order.words, options);
-    if (child) {
-      {
-        const std::scoped_lock lock(mutex_);
-        process_ = child->id();
-        if (cancelled_) ::kill(process_, SIGINT);
-      }
-      each_line(*child, [this](const std::string& line) { take_line(line); });
-      {
-        // Once it is waited for, the number may be another process's.
-        const std::scoped_lock lock(mutex_);
-        process_ = 0;
-      }
-      end = child->wait();
-    } else {
-      take_line("the program cannot be started: " + order.words.front());
-    }
-  } catch (const InternalError& error) {
+    measure(order, end);
+  } catch (const std::exception& error) {
     take_line(error.what());
   }
   const std::scoped_lock lock(mutex_);
@@ -145,24 +160,31 @@ void Jobs::run(const JobOrder& order) {
   publish_({{"type", "end"}, {"job", json_of(job)}});
 }
 
+/// @return Whether the line told progress; the lock is held.
+bool Jobs::take_progress(const std::string& line) {
+  if (!line.starts_with("{\"progress\"")) return false;
+  const json told = json::parse(line, nullptr, false);
+  const auto progress = told.is_object() ? told.find("progress") : told.end();
+  if (progress == told.end() || !progress->is_object()) return false;
+  const auto stage = progress->find("stage"), fraction = progress->find("fraction");
+  if (stage == progress->end() || !stage->is_string() || fraction == progress->end() ||
+      !fraction->is_number()) {
+    return false;
+  }
+  Job& job = *job_;
+  job.stage = stage->get<std::string>();
+  job.fraction = fraction->get<double>();
+  if (now() - last_progress_ < kProgressEvery && job.fraction < 1.0) return true;
+  last_progress_ = now();
+  publish_(
+      {{"type", "progress"}, {"job", job.id}, {"stage", job.stage}, {"fraction", job.fraction}});
+  return true;
+}
+
 void Jobs::take_line(const std::string& line) {
   const std::scoped_lock lock(mutex_);
+  if (take_progress(line)) return;
   Job& job = *job_;
-  if (line.starts_with("{\"progress\"")) {
-    const json told = json::parse(line, nullptr, false);
-    const auto progress = told.is_object() ? told.find("progress") : told.end();
-    if (progress != told.end() && progress->is_object()) {
-      job.stage = progress->value("stage", "");
-      job.fraction = progress->value("fraction", 0.0);
-      if (now() - last_progress_ < kProgressEvery && job.fraction < 1.0) return;
-      last_progress_ = now();
-      publish_({{"type", "progress"},
-                {"job", job.id},
-                {"stage", job.stage},
-                {"fraction", job.fraction}});
-      return;
-    }
-  }
   job.log.push_back(line);
   if (job.log.size() > kMostLines) job.log.pop_front();
   publish_({{"type", "log"}, {"job", job.id}, {"line", line}});

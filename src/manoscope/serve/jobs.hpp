@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "manoscope/core/child_process.hpp"
+
 namespace manoscope::serve {
 
 /// What is to be measured, paths relative to the served folder.
@@ -39,6 +41,8 @@ class Jobs {
   nlohmann::json cancel();
   /// The one that runs, else the last; null if there was none.
   nlohmann::json current() const;
+  /// The same for `see`, during which nothing is published: it is not to call anything of here.
+  void look(const std::function<void(const nlohmann::json& job)>& see) const;
 
  private:
   enum class State { running, done, failed, cancelled };
@@ -54,14 +58,16 @@ class Jobs {
   };
 
   void run(const JobOrder& order);
+  void measure(const JobOrder& order, ChildEnd& end);
   void take_line(const std::string& line);
+  bool take_progress(const std::string& line);
   nlohmann::json json_of(const Job& job) const;
 
   Publish publish_;
   mutable std::mutex mutex_;  ///< guards all below
   std::condition_variable changed_;
   std::optional<Job> job_;
-  int process_ = 0;  ///< while it runs and is not waited for
+  int process_ = 0;  ///< while it is not waited for: until then the number is no other's
   bool alive_ = false, cancelled_ = false;
   double last_progress_ = 0.0;  ///< s
   std::thread runner_, ender_;

@@ -111,6 +111,41 @@ TEST_F(JobsTest, WhoDoesNotStopWhenAskedIsEnded) {
   EXPECT_LT(patience, std::chrono::seconds(8));
 }
 
+TEST_F(JobsTest, ProgressOfAnotherKindIsALineLikeAnother) {
+  start(
+      "echo '{\"progress\": {\"stage\": 5}}'; echo '{\"progress\": {\"stage\": \"a\", "
+      "\"fraction\": \"b\"}}'; echo '{\"progress\": 1}'; echo '{\"progress\"'");
+  const json end = event("end")["job"];
+  EXPECT_EQ(end["state"], "done");
+  EXPECT_EQ(end["log"].size(), 4u);
+  EXPECT_EQ(end["stage"], "");
+}
+
+TEST_F(JobsTest, WhoHasClosedItsOutputIsCancelledToo) {
+  const auto before = steady_clock::now();
+  start("echo begun; exec >/dev/null 2>&1; exec sleep 60");
+  event("log");
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the end of the output is read
+  jobs.cancel();
+  EXPECT_EQ(event("end")["job"]["state"], "cancelled");
+  EXPECT_LT(steady_clock::now() - before, std::chrono::seconds(4)) << "by SIGINT, at once";
+}
+
+TEST_F(JobsTest, NothingIsPublishedWhileSomebodyLooks) {
+  // A page that is told the state is told every event behind it.
+  start("echo begun; sleep 0.2");
+  event("log");
+  bool ended = true;
+  jobs.look([&](const json& job) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    const std::scoped_lock lock(mutex);
+    ended = events.back()["type"] == "end";
+    EXPECT_EQ(job["state"], "running");
+  });
+  EXPECT_FALSE(ended);
+  EXPECT_EQ(event("end")["job"]["state"], "done");
+}
+
 TEST_F(JobsTest, KeepsTheLastLinesAlone) {
   start("i=0; while [ $i -lt 500 ]; do echo $i; i=$((i+1)); done; head -c 100000 /dev/zero");
   const json end = event("end")["job"];

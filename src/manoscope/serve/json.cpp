@@ -1,9 +1,9 @@
 #include "manoscope/serve/json.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
-
-#include "manoscope/serve/api_error.hpp"
 
 namespace manoscope::serve {
 
@@ -40,8 +40,9 @@ Reply reply_to_exception() {
     json faults = json::array();
     for (const InputError& fault : errors.faults()) faults.push_back(error_json(fault));
     return json_reply({{"error", faults.at(0)}, {"faults", faults}}, 422);
-  } catch (const json::exception& error) {
-    return error_reply(400, {"request", error.what(), "Send what the manual describes"});
+  } catch (const json::exception&) {
+    return error_reply(400, {"request", "something in it is of another kind than it ought to be",
+                             "Send what the manual describes"});
   } catch (const std::bad_alloc&) {
     return error_reply(500, {"", "out of memory", "Free some"});
   } catch (const std::exception& error) {
@@ -66,12 +67,30 @@ json parse_object(const std::string& body) {
 std::string text_in(const json& object, const char* key, const std::string& fallback) {
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return fallback;
-  return found->get<std::string>();
+  return text_of(*found, key);
 }
 
 bool flag_in(const json& object, const char* key) {
   const auto found = object.find(key);
-  return found != object.end() && found->get<bool>();
+  if (found == object.end() || found->is_null()) return false;
+  if (!found->is_boolean()) throw wrong_kind(key, "true or false");
+  return found->get<bool>();
+}
+
+ApiError wrong_kind(const std::string& name, const char* kind) {
+  return {400, name, fmt::format("{} is not {}", name, kind), "Send what the manual describes"};
+}
+
+std::string text_of(const json& value, const std::string& name) {
+  if (!value.is_string()) throw wrong_kind(name, "a text");
+  return value.get<std::string>();
+}
+
+std::vector<std::string> texts_of(const json& value, const std::string& name) {
+  if (!value.is_array()) throw wrong_kind(name, "a list of texts");
+  std::vector<std::string> texts;
+  for (const json& text : value) texts.push_back(text_of(text, name));
+  return texts;
 }
 
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }

@@ -2,8 +2,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/serve/api_error.hpp"
 #include "manoscope/serve/message.hpp"
 
 namespace manoscope::serve {
@@ -26,6 +28,13 @@ nlohmann::json parse_object(const std::string& body);
 /// @throws ApiError 400 if something else is there.
 std::string text_in(const nlohmann::json& object, const char* key, const std::string& fallback);
 bool flag_in(const nlohmann::json& object, const char* key);
+
+/// What stands in a request, of which `name` tells the user where.
+/// @throws ApiError 400, in words, if it is of another kind.
+std::string text_of(const nlohmann::json& value, const std::string& name);
+std::vector<std::string> texts_of(const nlohmann::json& value, const std::string& name);
+/// @param kind  "an object"
+ApiError wrong_kind(const std::string& name, const char* kind);
 
 /// A number, null if it is not finite.
 nlohmann::json number(double value);

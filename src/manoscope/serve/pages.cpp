@@ -18,6 +18,7 @@ Reply page(unsigned status, const std::string& policy, const std::string& head,
   reply.body = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n"  // none, or a browser asks for /favicon.ico
       "<title>manoscope</title>\n{}</head>\n<body>\n{}</body>\n</html>\n",
       head, body);
   reply.headers.emplace_back("Content-Security-Policy", policy);

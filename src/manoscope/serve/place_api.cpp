@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "manoscope/core/frame_words.hpp"
 #include "manoscope/core/unit_text.hpp"
 #include "manoscope/experiment/experiment.hpp"
 #include "manoscope/io/reader.hpp"
@@ -72,20 +73,6 @@ void check_enough(const Experiment& experiment, const std::string& file) {
   }
 }
 
-const char* word_of(FlowDirection flow) {
-  switch (flow) {
-    case FlowDirection::plus_columns:
-      return "+columns";
-    case FlowDirection::minus_columns:
-      return "-columns";
-    case FlowDirection::plus_rows:
-      return "+rows";
-    case FlowDirection::minus_rows:
-      return "-rows";
-  }
-  return "";
-}
-
 std::string millimetres(Length length) { return fmt::format("{:.6g} mm", length.in(mm)); }
 
 json frame_json(const ChannelFrame& frame, const CameraGrid& camera) {
@@ -99,8 +86,8 @@ json frame_json(const ChannelFrame& frame, const CameraGrid& camera) {
           {"origin_m", {frame.origin_x.si(), frame.origin_y.si()}},
           {"length_m", frame.length.si()},
           {"width_m", frame.width.si()},
-          {"flow", word_of(frame.flow)},
-          {"outward", frame.outward == Outward::plus_height ? "+height" : "-height"},
+          {"flow", word_of(kFlowDirections, frame.flow)},
+          {"outward", word_of(kOutwards, frame.outward)},
           {"rotation_rad", frame.rotation.si()},
           {"across_reversed", frame.across_reversed},
           {"rim_margin_m", maps::auto_rim_margin(maps::channel_grid(camera, frame), frame).si()}};
@@ -121,12 +108,11 @@ Reply place_reply(const Folder& folder, const std::string& body) {
                           [](const auto& a, const auto& b) { return a.pressure < b.pressure; });
   const CameraGrid camera =
       io::read_height_map(low->map, pipeline::reading_options(experiment)).grid();
-  const bool plus = frame.outward == Outward::plus_height;
   return json_reply({{"found",
                       {{"origin", {millimetres(frame.origin_x), millimetres(frame.origin_y)}},
-                       {"flow", word_of(frame.flow)},
+                       {"flow", word_of(kFlowDirections, frame.flow)},
                        {"rotation", fmt::format("{:.4g} deg", frame.rotation.in(deg))},
-                       {"outward", plus ? "+height" : "-height"}}},
+                       {"outward", word_of(kOutwards, frame.outward)}}},
                      {"frame", frame_json(frame, camera)},
                      {"length_misfit_m", number(place.length_misfit)},
                      {"width_misfit_m", number(place.width_misfit)},

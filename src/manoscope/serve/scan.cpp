@@ -14,6 +14,7 @@ namespace manoscope::serve {
 namespace {
 
 constexpr std::size_t kMostFiles = 5000;
+constexpr std::size_t kMostSeen = 50000;  // names read, some 100 ms
 constexpr int kDeepest = 6;
 
 struct CloseFolder {
@@ -63,28 +64,57 @@ void each_entry(const Folder& folder, const std::string& relative, const Take& t
   }
 }
 
-void scan_folder(const Folder& folder, const std::string& relative, int depth, Scan& found) {
-  std::vector<std::string> folders;
-  each_entry(folder, relative, [&](const Entry& entry, bool linked) {
-    const std::string path = under(relative, entry.name);
-    if (entry.is_folder) {
-      if (!linked) folders.push_back(path);
-    } else if (found.files.size() < kMostFiles) {
-      found.files[path] = {entry.size, entry.modified};
-    } else {
-      found.truncated = true;
-    }
-    return !found.truncated;
-  });
-  std::sort(folders.begin(), folders.end());
-  if (depth == kDeepest) {
-    found.truncated = found.truncated || !folders.empty();
-    return;
-  }
-  for (const std::string& path : folders) {
-    if (!found.truncated) scan_folder(folder, path, depth + 1, found);
-  }
+/// What makes an experiment or a result is found in however many files it lies.
+bool always_counts(const std::string& name) {
+  return name == "experiment.toml" || name == "result.nc" || name == "report.html";
 }
+
+/// A scan level by level: what lies near the top is found, however much lies deep in one branch.
+class Scanner {
+ public:
+  explicit Scanner(const Folder& folder) : folder_(folder) {}
+
+  Scan run() {
+    std::vector<std::string> level{""};
+    for (int depth = 0; !level.empty(); ++depth) {
+      if (depth > kDeepest) {
+        found_.truncated = true;
+        break;
+      }
+      std::vector<std::string> next;
+      for (const std::string& path : level) look_into(path, next);
+      std::sort(next.begin(), next.end());
+      level = std::move(next);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  void look_into(const std::string& relative, std::vector<std::string>& folders) {
+    each_entry(folder_, relative, [&](const Entry& entry, bool linked) {
+      const std::string path = under(relative, entry.name);
+      if (entry.is_folder && !linked) {
+        folders.push_back(path);
+      } else if (!entry.is_folder) {
+        take(path, entry);
+      }
+      if (++n_seen_ < kMostSeen) return true;
+      found_.truncated = true;
+      return false;
+    });
+  }
+  void take(const std::string& path, const Entry& entry) {
+    const bool room = n_usual_ < kMostFiles;
+    if (!room) found_.truncated = true;
+    if (!room && !always_counts(entry.name)) return;
+    n_usual_ += !always_counts(entry.name);
+    found_.files[path] = {entry.size, entry.modified};
+  }
+
+  const Folder& folder_;
+  Scan found_;
+  std::size_t n_seen_ = 0, n_usual_ = 0;
+};
 
 }  // namespace
 
@@ -101,11 +131,7 @@ std::vector<Entry> list_folder(const Folder& folder, const std::string& relative
   return entries;
 }
 
-Scan scan(const Folder& folder) {
-  Scan found;
-  scan_folder(folder, "", 0, found);
-  return found;
-}
+Scan scan(const Folder& folder) { return Scanner(folder).run(); }
 
 std::vector<std::string> changed_files(const Scan& before, const Scan& after) {
   std::vector<std::string> changed;

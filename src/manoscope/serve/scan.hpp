@@ -22,7 +22,9 @@ struct Entry {
 /// @param most  no more than so many, the rest is left out.
 std::vector<Entry> list_folder(const Folder& folder, const std::string& relative, std::size_t most);
 
-/// Every file beneath, by its relative path; links to folders are not followed.
+/// Every file beneath, by its relative path, down to six levels; links to folders are not followed.
+/// Of more than 5000 files those that make an experiment or a result are told all the same, and the
+/// rest from the top down.
 struct Scan {
   struct File {
     std::uint64_t size = 0;

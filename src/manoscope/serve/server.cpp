@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "manoscope/core/error.hpp"
+#include "manoscope/core/provenance.hpp"
+#include "manoscope/serve/refuse_connection.hpp"
 #include "manoscope/serve/session.hpp"
 #include "manoscope/serve/shared.hpp"
 
@@ -22,7 +24,7 @@ using boost::system::error_code;
 
 constexpr auto kTick = std::chrono::milliseconds(100);
 constexpr int kTicksBetweenScans = 10;
-constexpr int kQuickThreads = 2, kHeavyThreads = 1;
+constexpr int kQuickThreads = 2, kHeavyThreads = 1, kDiskThreads = 2;
 
 }  // namespace
 
@@ -32,22 +34,30 @@ struct Server::Impl {
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer ticks{io}, pause{io};
-  asio::thread_pool quick{kQuickThreads}, heavy{kHeavyThreads};
+  asio::thread_pool quick{kQuickThreads}, heavy{kHeavyThreads}, disk{kDiskThreads};
   std::unique_ptr<App> app;
   std::unique_ptr<Guard> guard;
   Monitor monitor;
   int n_ticks = 0;
   bool scans = false;
 
-  void listen(int port) {
+  error_code try_to_listen(int port) {
     const tcp::endpoint endpoint(asio::ip::address_v4::loopback(),
                                  static_cast<unsigned short>(port));
-    error_code error;
+    error_code error, ignored;
+    acceptor.close(ignored);
     acceptor.open(endpoint.protocol(), error);
     if (!error) ::fcntl(acceptor.native_handle(), F_SETFD, FD_CLOEXEC);
     if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);
     if (!error) acceptor.bind(endpoint, error);
     if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    return error;
+  }
+
+  void listen(const std::filesystem::path& folder, std::optional<int> wanted) {
+    const int port = wanted.value_or(port_of_folder(folder));
+    error_code error = try_to_listen(port);
+    if (error && !wanted) error = try_to_listen(0);
     if (error) {
       throw InputError(fmt::format("port {}", port), "cannot be listened at: " + error.message(),
                        "Leave out --port for one that is free, or name another");
@@ -99,6 +109,15 @@ struct Server::Impl {
   }
 };
 
+int port_of_folder(const std::filesystem::path& folder) {
+  constexpr unsigned kFirst = 61000, kLast = 65535;
+  constexpr std::size_t kDigits = 8;
+  std::error_code error;
+  const std::string path = std::filesystem::weakly_canonical(folder, error).string();
+  const auto number = std::stoul(sha256(path).substr(0, kDigits), nullptr, 16);
+  return static_cast<int>(kFirst + number % (kLast - kFirst + 1));
+}
+
 Server::Server(const ServerOptions& options) : impl_(std::make_unique<Impl>()) {
   Impl& impl = *impl_;
   const auto publish = [&impl](const nlohmann::json& event) {
@@ -106,7 +125,7 @@ Server::Server(const ServerOptions& options) : impl_(std::make_unique<Impl>()) {
     asio::post(impl.io, [&impl, text = std::move(text)] { impl.shared.listeners.tell(text); });
   };
   impl.app = std::make_unique<App>(options.folder, options.program, publish);
-  impl.listen(options.port);
+  impl.listen(options.folder, options.port);
   impl.guard = std::make_unique<Guard>(impl.shared.port, options.limits);
   impl.app->set_port(impl.shared.port);
   impl.shared.limits = options.limits;
@@ -115,13 +134,15 @@ Server::Server(const ServerOptions& options) : impl_(std::make_unique<Impl>()) {
   impl.shared.io = &impl.io;
   impl.shared.quick = &impl.quick;
   impl.shared.heavy = &impl.heavy;
+  impl.shared.disk = &impl.disk;
 }
 
 Server::~Server() {
   impl_->shared.stopping = true;
   impl_->io.stop();
-  impl_->quick.join();
-  impl_->heavy.join();
+  // What waits in a queue is dropped; what runs is asked to stop.
+  for (asio::thread_pool* pool : {&impl_->quick, &impl_->heavy, &impl_->disk}) pool->stop();
+  for (asio::thread_pool* pool : {&impl_->quick, &impl_->heavy, &impl_->disk}) pool->join();
   impl_->app.reset();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "manoscope/core/monitor.hpp"
@@ -12,10 +13,15 @@ namespace manoscope::serve {
 
 struct ServerOptions {
   std::filesystem::path folder = ".";
-  int port = 0;         ///< 0: any that is free
+  /// 0: any that is free. None: port_of_folder(), or any if that is taken.
+  std::optional<int> port;
   std::string program;  ///< path of this program, which measures
   Limits limits;
 };
+
+/// A port of the folder's own, the same at every start: what a browser keeps for the page, it keeps
+/// by its port. Above those that Linux gives to clients, 61000 to 65535.
+int port_of_folder(const std::filesystem::path& folder);
 
 /// The server of one folder, on the loopback interface alone.
 class Server {

@@ -183,6 +183,73 @@ TEST_F(ServerTest, TellsListenersOfFilesThatChange) {
   EXPECT_NE(read.find("{\"changed\":[\"s1/new.csv\"],\"type\":\"files\"}"), std::string::npos);
 }
 
+TEST_F(ServerTest, SendsLargeFilesWhole) {
+  std::string bytes(3000000, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i % 251);
+  write_text(folder / "served/r/result.nc", bytes);
+  write_text(folder / "served/r/empty.csv", "");
+  Connection connection(server.port());
+  for (int i = 0; i < 3; ++i) {
+    connection.send(server.request("GET", "/results/r/result.nc"));
+    const Answer answer = connection.answer();
+    EXPECT_EQ(answer.status, 200);
+    EXPECT_TRUE(answer.body == bytes);
+    connection.send(server.request("GET", "/results/r/empty.csv"));
+    EXPECT_EQ(connection.answer().status, 200);
+  }
+}
+
+TEST_F(ServerTest, ASandboxedPageHasNoOpenerPolicy) {
+  // The HTML standard makes both together in a tab a network error.
+  write_text(folder / "served/r/report.html", "<p>");
+  const Answer report = server.ask("GET", "/results/r/report.html");
+  EXPECT_TRUE(report.field("Content-Security-Policy").starts_with("sandbox"));
+  EXPECT_EQ(report.field("Cross-Origin-Opener-Policy"), "");
+  EXPECT_EQ(server.ask("GET", "/").field("Cross-Origin-Opener-Policy"), "same-origin");
+}
+
+TEST_F(ServerTest, AFolderHasAPortOfItsOwn) {
+  EXPECT_EQ(port_of_folder(folder / "served/../served/s1/."), port_of_folder(folder / "served/s1"));
+  int n_own = 0;
+  for (const char* name : {"a", "b", "c", "d", "e"}) {
+    ServerOptions options;
+    options.folder = folder / name;
+    std::filesystem::create_directories(options.folder);
+    const int own = port_of_folder(options.folder);
+    EXPECT_GE(own, 61000);
+    EXPECT_LE(own, 65535);
+    for (int i = 0; i < 2; ++i) {
+      const Server first(options), second(options);  // the port is taken: any other does
+      EXPECT_NE(second.port(), first.port());
+      n_own += first.port() == own;
+    }
+  }
+  EXPECT_GE(n_own, 6) << "of 10: some other program may have one of the ports";
+}
+
+TEST_F(ServerTest, TheEndDoesNotWaitForWhatIsStillInLine) {
+  using Clock = std::chrono::steady_clock;
+  const CameraGrid camera{2500, 2000, 1.0 * um, 1.0 * um};
+  std::filesystem::create_directories(folder / "large");
+  io::write_gsf(folder / "large/map.gsf", HeightMap(camera, Array2::Zero(2000, 2500)), "height");
+  ServerOptions options;
+  options.folder = folder / "large";
+  auto large = std::make_unique<TestServer>(options);
+  auto began = Clock::now();
+  EXPECT_EQ(large->ask("GET", "/api/map?file=map.gsf").status, 200);
+  const auto one = Clock::now() - began;
+  std::vector<std::unique_ptr<Connection>> waiting;
+  for (int i = 0; i < 20; ++i) {
+    waiting.push_back(std::make_unique<Connection>(large->port()));
+    waiting.back()->send(large->request("GET", "/api/map?file=map.gsf"));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  began = Clock::now();
+  large.reset();
+  // The one that runs, and a tick of 0.1 s: far from the 20 in line.
+  EXPECT_LT(Clock::now() - began, 7 * one + std::chrono::milliseconds(300));
+}
+
 TEST_F(ServerTest, APortThatIsTakenIsTheUsersToMend) {
   ServerOptions options;
   options.folder = folder / "served";

@@ -1,23 +1,21 @@
 #include "manoscope/serve/session.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <boost/asio/post.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
-#include <chrono>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "manoscope/serve/deadline.hpp"
 #include "manoscope/serve/event_stream.hpp"
+#include "manoscope/serve/http_head.hpp"
 #include "manoscope/serve/json.hpp"
 #include "manoscope/serve/pages.hpp"
 #include "manoscope/serve/peer_user.hpp"
+#include "manoscope/serve/run_on.hpp"
+#include "manoscope/serve/send_reply.hpp"
 #include "manoscope/serve/shared.hpp"
 
 namespace manoscope::serve {
@@ -28,59 +26,16 @@ namespace http = boost::beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-Method method_of(http::verb verb) {
-  switch (verb) {
-    case http::verb::get:
-      return Method::get;
-    case http::verb::put:
-      return Method::put;
-    case http::verb::post:
-      return Method::post;
-    case http::verb::delete_:
-      return Method::del;
-    default:
-      return Method::other;
+ConnectionEnd end_of(const tcp::endpoint& end) {
+  return {end.address().to_v4().to_uint(), end.port()};
+}
+
+Reply reply_to(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (...) {
+    return reply_to_exception();
   }
-}
-
-template <class Fields>
-std::vector<std::string> every(const Fields& fields, const char* name) {
-  std::vector<std::string> values;
-  const auto [first, last] = fields.equal_range(name);
-  for (auto it = first; it != last; ++it) values.emplace_back(it->value());
-  return values;
-}
-
-template <class Fields>
-std::string first(const Fields& fields, const char* name) {
-  const auto found = fields.find(name);
-  return found == fields.end() ? std::string() : std::string(found->value());
-}
-
-template <class Message>
-Head head_of(const Message& request) {
-  Head head;
-  head.method = method_of(request.method());
-  head.http11 = request.version() == 11;
-  head.target = std::string(request.target());
-  head.host = every(request, "Host");
-  head.origin = every(request, "Origin");
-  head.cookie = every(request, "Cookie");
-  head.content_length = every(request, "Content-Length");
-  head.transfer_encoding = every(request, "Transfer-Encoding");
-  head.content_type = every(request, "Content-Type");
-  head.fetch_site = first(request, "Sec-Fetch-Site");
-  head.upgrades = !every(request, "Upgrade").empty();
-  return head;
-}
-
-/// What a header or body that cannot be read is answered with.
-Refusal refusal_for(error_code error) {
-  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
-    return {431, "a header that is too large", "Send less"};
-  }
-  if (error == http::error::body_limit) return {413, "a body that is too large", "Send less"};
-  return {400, "this is no HTTP: " + error.message(), "Send a request as RFC 9112 says"};
 }
 
 class Session : public std::enable_shared_from_this<Session> {
@@ -88,7 +43,7 @@ class Session : public std::enable_shared_from_this<Session> {
   Session(tcp::socket socket, Shared& shared)
       : socket_(std::move(socket)),
         shared_(shared),
-        timer_(*shared.io),
+        deadline_(*shared.io, socket_),
         buffer_(2 * std::size_t{shared.limits.header_bytes}) {
     ++shared_.n_connections;
   }
@@ -101,21 +56,8 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   using Parser = http::request_parser<http::buffer_body>;
 
-  /// From now on, what is under way may take so long.
-  void limit(double seconds) {
-    timed_out_ = false;
-    timer_.expires_after(std::chrono::milliseconds(static_cast<long long>(seconds * 1e3)));
-    timer_.async_wait([self = shared_from_this(), turn = ++turn_](error_code error) {
-      if (error || turn != self->turn_) return;
-      self->timed_out_ = true;
-      error_code ignored;
-      self->socket_.cancel(ignored);
-    });
-  }
-  void unlimit() {
-    ++turn_;
-    timer_.cancel();
-  }
+  void limit(double seconds) { deadline_.set(seconds, shared_from_this()); }
+  void unlimit() { deadline_.clear(); }
   void close() {
     unlimit();
     error_code ignored;
@@ -146,19 +88,18 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
   void take_header(error_code error) {
-    if (timed_out_) {
+    if (deadline_.passed()) {
       const bool began = parser_->got_some() || buffer_.size() > 0;
       if (!began) return close();
       return refuse({408, "a header that does not end", "Send it at once"});
     }
-    const bool of_http = error.category() == http::make_error_code(http::error{}).category();
     if (error == http::error::end_of_stream || error == http::error::partial_message ||
-        (error && !of_http)) {
+        (error && !is_of_http(error))) {
       return close();
     }
     if (error) return refuse(refusal_for(error));
     Head head = head_of(parser_->get());
-    if (head.target.find("token=") != std::string::npos) head.peer_user = user_of_peer();
+    head.peer_user = [this] { return user_of_peer(); };
     admission_ = shared_.guard->admit(head);
     if (admission_.refusal) return refuse(*admission_.refusal);
     if (admission_.enters) return enter();
@@ -166,8 +107,8 @@ class Session : public std::enable_shared_from_this<Session> {
     request_ = Request{};
     request_.method = head.method;
     request_.address = admission_.address;
-    request_.if_match = first(parser_->get(), "If-Match");
-    request_.if_none_match = first(parser_->get(), "If-None-Match");
+    request_.if_match = first_field(parser_->get(), "If-Match");
+    request_.if_none_match = first_field(parser_->get(), "If-None-Match");
     total_ = 0;
     most_ = admission_.route.body == Body::json ? shared_.limits.json_bytes
                                                 : shared_.limits.upload_bytes;
@@ -176,10 +117,14 @@ class Session : public std::enable_shared_from_this<Session> {
     read_body();
   }
 
-  std::optional<unsigned> user_of_peer() const {
-    error_code error;
-    const auto peer = socket_.remote_endpoint(error);
-    return error ? std::nullopt : peer_user(peer.port(), shared_.port);
+  /// Asked of the system once in a connection.
+  std::optional<unsigned> user_of_peer() {
+    if (!std::exchange(peer_asked_, true)) {
+      error_code error, own_error;
+      const auto peer = socket_.remote_endpoint(error), own = socket_.local_endpoint(own_error);
+      if (!error && !own_error) peer_user_ = peer_user(end_of(peer), end_of(own));
+    }
+    return peer_user_;
   }
 
   void enter() { reply(entrance_page(shared_.guard->cookie())); }
@@ -194,7 +139,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   void read_body() {
     if (parser_->is_done()) return upload_ ? finish_upload() : answer();
-    if (first(parser_->get(), "Expect") == "100-continue" && total_ == 0 && !continued_) {
+    if (first_field(parser_->get(), "Expect") == "100-continue" && total_ == 0 && !continued_) {
       return send_continue();
     }
     if (chunk_.empty()) chunk_.resize(std::size_t{64} << 10);
@@ -220,11 +165,10 @@ class Session : public std::enable_shared_from_this<Session> {
   }
 
   void take_body(error_code error) {
-    if (timed_out_) return refuse({408, "a body that does not end", "Send it at once"});
+    if (deadline_.passed()) return refuse({408, "a body that does not end", "Send it at once"});
     if (error == http::error::need_buffer) error = {};
     if (error) {
-      const bool of_http = error.category() == http::make_error_code(http::error{}).category();
-      if (!of_http || error == http::error::partial_message) return close();
+      if (!is_of_http(error) || error == http::error::partial_message) return close();
       return refuse(refusal_for(error));
     }
     const std::size_t n = chunk_.size() - parser_->get().body().size;
@@ -235,7 +179,7 @@ class Session : public std::enable_shared_from_this<Session> {
       return read_body();
     }
     on_pool(
-        false,
+        *shared_.disk,
         [this, n] {
           upload_->write({chunk_.data(), n});
         },
@@ -244,38 +188,29 @@ class Session : public std::enable_shared_from_this<Session> {
 
   /// Does `work` on a pool and `then` back on this thread; what `work` throws is the answer.
   template <class Work, class Then>
-  void on_pool(bool heavy, Work work, Then then) {
-    auto& pool = heavy ? *shared_.heavy : *shared_.quick;
-    asio::post(pool, [self = shared_from_this(), work, then]() mutable {
-      std::shared_ptr<Reply> failure;
-      try {
-        work();
-      } catch (...) {
-        failure = std::make_shared<Reply>(reply_to_exception());
-      }
-      auto& io = *self->shared_.io;
-      asio::post(io, [self = std::move(self), then, failure] {
-        if (failure) return self->reply(std::move(*failure), true);
-        then();
-      });
-    });
+  void on_pool(asio::thread_pool& pool, Work work, Then then) {
+    run_on(pool, *shared_.io, shared_from_this(), std::move(work),
+           [this, then = std::move(then)](const std::exception_ptr& failure) {
+             if (failure) return reply(reply_to(failure), true);
+             then();
+           });
   }
 
   void begin_upload() {
     on_pool(
-        false, [this] { upload_ = shared_.app->begin_upload(admission_.address); },
+        *shared_.disk, [this] { upload_ = shared_.app->begin_upload(admission_.address); },
         [this] { read_body(); });
   }
   void finish_upload() {
     on_pool(
-        false, [this] { upload_->finish(); }, [this] { reply(upload_reply(*upload_)); });
+        *shared_.disk, [this] { upload_->finish(); }, [this] { reply(upload_reply(*upload_)); });
   }
 
   void answer() {
     const bool heavy =
         admission_.route.heavy || shared_.app->reads_maps(admission_.route, request_);
     on_pool(
-        heavy,
+        heavy ? *shared_.heavy : *shared_.quick,
         [this] { answer_ = shared_.app->answer(admission_.route, request_, shared_.monitor()); },
         [this] { reply(std::move(answer_)); });
   }
@@ -289,62 +224,13 @@ class Session : public std::enable_shared_from_this<Session> {
           true);
   }
 
-  template <class Message>
-  void set_head(Message& message, const Reply& reply, bool last) {
-    message.result(reply.status);
-    message.set(http::field::content_type, reply.type);
-    message.set("X-Content-Type-Options", "nosniff");
-    message.set("Referrer-Policy", "no-referrer");
-    message.set("Cache-Control", "no-store");
-    message.set("Cross-Origin-Opener-Policy", "same-origin");
-    message.set("Cross-Origin-Resource-Policy", "same-origin");
-    message.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
-    for (const auto& [name, value] : reply.headers) message.set(name, value);
-    message.keep_alive(!last);
-  }
-
   void reply(Reply reply, bool last = false) {
     last = last || !parser_->get().keep_alive() || shared_.stopping;
-    if (reply.file) {
-      http::response<http::file_body> message;
-      set_head(message, reply, last);
-      boost::beast::file_posix file;
-      file.native_handle(reply.file.release());
-      error_code error;
-      message.body().reset(std::move(file), error);
-      if (error) return close();
-      message.content_length(reply.file_size);
-      return send(std::move(message), last);
-    }
-    http::response<http::string_body> message;
-    set_head(message, reply, last);
-    message.body() = std::move(reply.body);
-    message.prepare_payload();
-    send(std::move(message), last);
-  }
-
-  template <class Body>
-  struct Outgoing {
-    explicit Outgoing(http::response<Body> response) : message(std::move(response)) {}
-    http::response<Body> message;
-    http::response_serializer<Body> serializer{message};
-  };
-
-  template <class Body>
-  void send(http::response<Body> message, bool last) {
-    send_some(std::make_shared<Outgoing<Body>>(std::move(message)), last);
-  }
-
-  template <class Body>
-  void send_some(std::shared_ptr<Outgoing<Body>> out, bool last) {
-    limit(shared_.limits.idle_seconds);
-    http::async_write_some(socket_, out->serializer,
-                           [self = shared_from_this(), out, last](error_code error, std::size_t) {
-                             self->unlimit();
-                             if (error) return self->close();
-                             if (!out->serializer.is_done()) return self->send_some(out, last);
-                             self->sent(last);
-                           });
+    send_reply(socket_, shared_, std::move(reply), last,
+               [self = shared_from_this(), last](bool whole) {
+                 if (!whole) return self->close();
+                 self->sent(last);
+               });
   }
 
   void sent(bool last) {
@@ -364,16 +250,16 @@ class Session : public std::enable_shared_from_this<Session> {
   void linger() {
     socket_.async_read_some(asio::buffer(chunk_),
                             [self = shared_from_this()](error_code error, std::size_t) {
-                              if (error || self->timed_out_) return self->close();
+                              if (error || self->deadline_.passed()) return self->close();
                               self->linger();
                             });
   }
 
   tcp::socket socket_;
   Shared& shared_;
-  asio::steady_timer timer_;
-  int turn_ = 0;
-  bool timed_out_ = false, continued_ = false;
+  Deadline deadline_;
+  bool continued_ = false, peer_asked_ = false;
+  std::optional<unsigned> peer_user_;
   boost::beast::flat_buffer buffer_;
   std::optional<Parser> parser_;
   Admission admission_;
@@ -388,34 +274,6 @@ class Session : public std::enable_shared_from_this<Session> {
 
 void start_session(tcp::socket socket, Shared& shared) {
   std::make_shared<Session>(std::move(socket), shared)->start();
-}
-
-void refuse_connection(tcp::socket socket, Shared& shared) {
-  static const std::string kBusy =
-      "HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
-  struct Refused {
-    Refused(tcp::socket connection, Shared& all)
-        : socket(std::move(connection)), timer(*all.io), shared(all) {
-      ++shared.n_refused;
-    }
-    ~Refused() { --shared.n_refused; }
-    tcp::socket socket;
-    asio::steady_timer timer;
-    Shared& shared;
-  };
-  if (shared.n_refused >= 2 * shared.limits.connections) return;  // closed without a word
-  auto refused = std::make_shared<Refused>(std::move(socket), shared);
-  error_code ignored;
-  refused->socket.non_blocking(true, ignored);
-  refused->socket.write_some(asio::buffer(kBusy), ignored);
-  refused->socket.shutdown(tcp::socket::shutdown_send, ignored);
-  // Until the client has read it: what it sent meanwhile would reset the connection.
-  refused->timer.expires_after(
-      std::chrono::milliseconds(static_cast<long long>(1e3 * shared.limits.linger_seconds)));
-  refused->timer.async_wait([refused](error_code) {
-    error_code closed;
-    refused->socket.close(closed);
-  });
 }
 
 }  // namespace manoscope::serve

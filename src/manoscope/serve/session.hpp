@@ -9,7 +9,4 @@ struct Shared;
 /// Serves one connection until it ends. To be called from the thread of the sockets.
 void start_session(boost::asio::ip::tcp::socket socket, Shared& shared);
 
-/// Tells a connection beyond the cap that the server is busy, and ends it.
-void refuse_connection(boost::asio::ip::tcp::socket socket, Shared& shared);
-
 }  // namespace manoscope::serve

@@ -37,7 +37,8 @@ class Listeners {
 };
 
 /// What every connection of a server uses. Sockets, guard and listeners belong to the one thread
-/// that runs `io`; the pools do what touches the disk.
+/// that runs `io`; the pools do what touches the disk: `quick` answers, `heavy` reads maps, `disk`
+/// takes and sends whole files.
 struct Shared {
   Limits limits;
   Listeners listeners;
@@ -49,6 +50,7 @@ struct Shared {
   boost::asio::io_context* io = nullptr;
   boost::asio::thread_pool* quick = nullptr;
   boost::asio::thread_pool* heavy = nullptr;
+  boost::asio::thread_pool* disk = nullptr;
 
   Monitor monitor() {
     Monitor monitor;

@@ -88,7 +88,13 @@ class Connection {
     read_.erase(0, size);
     return answer;
   }
-  bool is_closed() { return receive(1).empty(); }
+  /// Whether the server closes within the time, and says nothing before.
+  bool is_closed(int milliseconds = 20000) {
+    pollfd waiting{socket_.number(), POLLIN, 0};
+    if (!read_.empty() || ::poll(&waiting, 1, milliseconds) <= 0) return false;
+    char byte = 0;
+    return ::recv(socket_.number(), &byte, 1, 0) <= 0;
+  }
 
  private:
   Descriptor socket_;
