@@ -2,11 +2,11 @@
 
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import type { Browser, Page } from 'playwright-core';
+import type { Browser } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { launch } from './support';
 import {
-  EXPERIMENT, MAPS, type Opened, type Served, go, openApp, openTab, pasteInto, rowsOf, saved, serve, toml, withExperiment, withMaps,
+  EXPERIMENT, MAPS, begin, field, go, openApp, openTab, pasteInto, rowsOf, saved, serve, toml, withExperiment, withMaps,
 } from './serve';
 
 let browser: Browser;
@@ -15,30 +15,11 @@ beforeAll(async () => {
 });
 afterAll(() => browser?.close());
 
-/** A served folder and a page of it, for the tests of one group; the page has asked nobody else for anything. */
-function begin(fill: (folder: string) => void): { served: Served; opened: Opened; page: Page } {
-  const all = {} as { served: Served; opened: Opened; page: Page };
-  beforeAll(async () => {
-    all.served = await serve(fill);
-    all.opened = await openApp(browser, all.served);
-    all.page = all.opened.page;
-  });
-  afterAll(async () => {
-    await all.opened?.context.close();
-    await all.served?.stop();
-    expect(all.opened.foreign).toEqual([]);
-    // An answer that refuses is told by the browser, too; it is tested where it is due.
-    expect(all.opened.faults.filter((text) => !text.startsWith('Failed to load resource'))).toEqual([]);
-  });
-  return all;
-}
-
-const field = (page: Page, label: string) => page.getByLabel(label, { exact: true });
 const stated = (key: string) => new RegExp(`^${key}\\s*=\\s*"([^"]*)"`, 'm').exec(readFileSync(join(EXPERIMENT(), 'experiment.toml'), 'utf8'))![1];
 const table = (rows: string[][]) => rows.map((row) => row.join('\t')).join('\n');
 
 describe('from an empty folder to a report', () => {
-  const all = begin(() => {});
+  const all = begin(() => browser, () => {});
 
   it('takes maps, and says what is none', async () => {
     const { page } = all;
@@ -190,7 +171,7 @@ describe('from an empty folder to a report', () => {
 });
 
 describe('a result of another experiment', () => {
-  const all = begin((folder) => {
+  const all = begin(() => browser, (folder) => {
     withExperiment(folder);
     mkdirSync(join(folder, 'result'));
     writeFileSync(join(folder, 'result', 'result.nc'), 'of another one');
@@ -208,7 +189,7 @@ describe('a result of another experiment', () => {
 });
 
 describe('what is typed', () => {
-  const all = begin((folder) => withExperiment(folder, 's1'));
+  const all = begin(() => browser, (folder) => withExperiment(folder, 's1'));
 
   it('outlives a reload at once, and the step too', async () => {
     const { page, served } = all;
@@ -271,7 +252,7 @@ describe('what is typed', () => {
 });
 
 describe('two tabs', () => {
-  const all = begin((folder) => withExperiment(folder));
+  const all = begin(() => browser, (folder) => withExperiment(folder));
 
   it('follow each other', async () => {
     const { page, opened } = all;
@@ -308,7 +289,7 @@ describe('two tabs', () => {
 });
 
 describe('a measurement', () => {
-  const all = begin((folder) => withExperiment(folder, 's1'));
+  const all = begin(() => browser, (folder) => withExperiment(folder, 's1'));
 
   it('is cancelled, from either of two tabs, and writes nothing', async () => {
     const { page, served, opened } = all;
@@ -339,7 +320,7 @@ describe('a measurement', () => {
 });
 
 describe('maps alone', () => {
-  const all = begin(withMaps);
+  const all = begin(() => browser, withMaps);
 
   it('come by dropping, too', async () => {
     const { page } = all;

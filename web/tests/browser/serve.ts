@@ -6,6 +6,7 @@ import { cpSync, mkdtempSync, readFileSync, readdirSync, rmSync } from 'node:fs'
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+import { afterAll, beforeAll, expect } from 'vitest';
 import { named } from './support';
 
 export const EXPERIMENT = () => named('MANOSCOPE_EXPERIMENT');
@@ -22,6 +23,7 @@ export interface Served {
   address: string; // with its token, which is good once
   known?: Awaited<ReturnType<BrowserContext['storageState']>>; // of the browser that used it
   stop: () => Promise<void>;
+  restart: () => Promise<void>; // at the same port; it then knows no browser of before
 }
 
 function firstAddress(program: ChildProcess): Promise<string> {
@@ -42,15 +44,29 @@ function firstAddress(program: ChildProcess): Promise<string> {
 export async function serve(fill: (folder: string) => void = () => {}): Promise<Served> {
   const folder = mkdtempSync(join(tmpdir(), 'manoscope-app-'));
   fill(folder);
-  const program = spawn(resolve(named('MANOSCOPE_PROGRAM')), ['serve', folder, '--port', '0', '--no-browser'], { stdio: 'pipe' });
-  const address = await firstAddress(program);
-  const stop = async () => {
+  const start = (port: string) =>
+    spawn(resolve(named('MANOSCOPE_PROGRAM')), ['serve', folder, '--port', port, '--no-browser'], { stdio: 'pipe' });
+  let program = start('0');
+  const end = async () => {
     const ended = new Promise((done) => program.on('exit', done));
     program.kill('SIGINT');
     await ended;
-    rmSync(folder, { recursive: true });
   };
-  return { folder, address, stop };
+  const served: Served = {
+    folder,
+    address: await firstAddress(program),
+    stop: async () => {
+      await end();
+      rmSync(folder, { recursive: true });
+    },
+    restart: async () => {
+      await end();
+      program = start(new URL(served.address).port);
+      served.address = await firstAddress(program);
+      served.known = undefined;
+    },
+  };
+  return served;
 }
 
 /** The whole experiment as the program made it, without its truth. */
@@ -67,15 +83,15 @@ export interface Opened {
   faults: string[]; // messages of the console and errors nobody caught
 }
 
-function watch(page: Page, origin: string): Pick<Opened, 'foreign' | 'faults'> {
-  const seen = { foreign: [] as string[], faults: [] as string[] };
+function watch(page: Page, origin: string, seen: Pick<Opened, 'foreign' | 'faults'>): void {
   page.on('request', (request) => {
     const url = request.url();
     if (!url.startsWith(origin) && !/^(data|blob|about):/.test(url)) seen.foreign.push(url);
   });
   page.on('console', (message) => seen.faults.push(message.text()));
   page.on('pageerror', (error) => seen.faults.push(error.message));
-  return seen;
+  // Leaving a page that has something unsaved.
+  page.on('dialog', (dialog) => void dialog.accept());
 }
 
 export async function openApp(browser: Browser, served: Served, options: BrowserContextOptions = {}): Promise<Opened> {
@@ -84,7 +100,8 @@ export async function openApp(browser: Browser, served: Served, options: Browser
   const { origin } = new URL(served.address);
   await context.grantPermissions(['clipboard-read', 'clipboard-write'], { origin });
   context.setDefaultTimeout(15_000);
-  const seen = watch(page, origin);
+  const seen = { foreign: [], faults: [] };
+  watch(page, origin, seen);
   await page.goto(served.known ? origin : served.address);
   await page.getByRole('heading', { name: 'Maps' }).waitFor();
   served.known = await context.storageState();
@@ -92,8 +109,9 @@ export async function openApp(browser: Browser, served: Served, options: Browser
 }
 
 /** One more tab of the same browser. */
-export async function openTab({ context, page: first }: Opened): Promise<Page> {
+export async function openTab({ context, page: first, foreign, faults }: Opened): Promise<Page> {
   const page = await context.newPage();
+  watch(page, new URL(first.url()).origin, { foreign, faults });
   await page.goto(first.url());
   await page.getByRole('navigation', { name: 'Steps' }).waitFor();
   return page;
@@ -113,3 +131,29 @@ export async function pasteInto(page: Page, cell: string, text: string): Promise
 }
 
 export const toml = (served: Served, file = 'experiment.toml') => readFileSync(join(served.folder, file), 'utf8');
+
+export interface Begun {
+  served: Served;
+  opened: Opened;
+  page: Page;
+}
+
+/** A served folder and a page of it, for the tests of one group; no page of it has asked anybody else for anything. */
+export function begin(browser: () => Browser, fill: (folder: string) => void): Begun {
+  const all = {} as Begun;
+  beforeAll(async () => {
+    all.served = await serve(fill);
+    all.opened = await openApp(browser(), all.served);
+    all.page = all.opened.page;
+  });
+  afterAll(async () => {
+    await all.opened?.context.close();
+    await all.served?.stop();
+    expect(all.opened.foreign).toEqual([]);
+    // An answer that refuses is told by the browser, too, as is a server that is gone; both are tested where they are due.
+    expect(all.opened.faults.filter((text) => !/^Failed to load resource|^WebSocket connection/.test(text))).toEqual([]);
+  });
+  return all;
+}
+
+export const field = (page: Page, label: string) => page.getByLabel(label, { exact: true });

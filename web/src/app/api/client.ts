@@ -65,9 +65,10 @@ export const api = {
     ask<{ file: string }>('PUT', `/api/files/${pathAddress(rel)}`, {
       body: file, headers: { 'Content-Type': 'application/octet-stream' },
     }),
-  map: ({ pitch, ...rest }: MapRequest) =>
-    ask<MapAnswer>('GET', `/api/map?${query({ ...rest, longest: '900', pitch_x: pitch?.[0], pitch_y: pitch?.[1] })}`),
-  place: (file: string, body: Body) => ask<Place>('POST', '/api/place', json({ file, ...body })),
+  map: ({ pitch, ...rest }: MapRequest, signal?: AbortSignal) =>
+    ask<MapAnswer>('GET', `/api/map?${query({ ...rest, longest: '900', pitch_x: pitch?.[0], pitch_y: pitch?.[1] })}`, { signal }),
+  place: (file: string, body: Body, signal?: AbortSignal) =>
+    ask<Place>('POST', '/api/place', { ...json({ file, ...body }), signal }),
   experiment: (file: string) => ask<Experiment>('GET', `/api/experiment?${query({ file })}`),
   check: (file: string, body: Body, maps = false) =>
     ask<Experiment>('POST', '/api/check', json({ file, ...body, ...(maps ? { maps } : {}) })),

@@ -50,7 +50,7 @@ export interface Experiment {
   flow_maps: number;
 }
 
-export type Body = { form: Form } | { text: string };
+export type Body = { form: Form } | { text: string; lists: Record<string, string> };
 
 export interface FolderState {
   version: string;

@@ -5,48 +5,38 @@ import { Refused, api } from '../api/client';
 import type { Body, Experiment, Fault, Form, Pair, Text } from '../api/types';
 import { differences } from './differences';
 import { setField } from './fields';
-import { type ListName, sentList } from './lists';
+import { History } from './history.svelte';
+import { type Rows, copy, placed, rowsOf, same, sentForm } from './sent';
 import { type Kept, forget, keep, kept } from './unsaved';
 
 const PAUSE = 500; // ms from the last change to saving
-const MOST_UNDOS = 100;
 
 export type Status = 'saved' | 'changed' | 'saving' | 'unsaved';
-
-const copy = <T>(value: T): T => JSON.parse(JSON.stringify(value)) as T;
-
-/** The form as it is sent: lists without empty rows. */
-function sentForm(form: Form): { form: Form; rows: Record<ListName, number[]> } {
-  const sent = copy(form);
-  const rows: Record<ListName, number[]> = { hydrostatic: [], flow: [] };
-  for (const name of ['hydrostatic', 'flow'] as const) {
-    const list = sent[name];
-    if (list === null) continue;
-    const whole = sentList(list);
-    sent[name] = whole.list;
-    rows[name] = whole.rows;
-  }
-  return { form: sent, rows };
-}
+/** Texts that are edited themselves, by the names of lists; '' is the experiment's. */
+export type Typed = Record<string, string>;
 
 export class Draft {
   readonly file: string;
   form = $state<Form | null>(null);
   text = $state(''); // as the file has it, or will have it
   lists = $state.raw<Record<string, string>>({}); // texts of its lists
-  typed = $state<string | null>(null); // the text while it is edited itself
+  typed = $state.raw<Typed | null>(null);
   faults = $state.raw<Fault[]>([]);
   notes = $state.raw<string[]>([]);
   mapsChecked = $state(false);
-  status = $state<Status>('saved');
+  status = $state<Status>('saved'); // of the form; of the text while that is sent
   trouble = $state(''); // why nothing can be saved
   conflict = $state.raw<Experiment | null>(null); // the file as others left it
   told = $state(''); // what happened to the file from outside
+  output = $state(''); // folder of the next result; '' for the usual one
   readonly touched = new SvelteSet<string>(); // fields that were set here
+  private readonly history = new History();
+  private base = $state.raw(''); // the form before the change that is being made
   private revision: string | null = null;
-  private undone = $state.raw<string[]>([]);
-  private base = ''; // the form before the change that is being made
   private timer: ReturnType<typeof setTimeout> | undefined;
+  private running: Promise<void> | null = null; // saving
+  private puts = 0;
+  private looks = 0;
   private readonly place: string; // of what is not saved, in the browser
 
   constructor(experiment: Experiment, folder: string) {
@@ -64,8 +54,19 @@ export class Draft {
   get locked(): boolean {
     return this.typed !== null || this.form === null || this.conflict !== null;
   }
+  /** The text waits for the form: it does not say yet what the form says. */
+  get textLocked(): boolean {
+    return this.conflict !== null || (this.typed === null && this.status !== 'saved');
+  }
   get canUndo(): boolean {
-    return this.undone.length > 0 && !this.locked;
+    return (this.history.canUndo || this.base !== '') && !this.locked;
+  }
+  get canRedo(): boolean {
+    return this.history.canRedo && this.base === '' && !this.locked;
+  }
+  /** What closing the tab would lose. */
+  get unsafe(): boolean {
+    return this.typed !== null || this.conflict !== null || this.status === 'unsaved';
   }
 
   faultsOf(key: string, row: number | null = null): Fault[] {
@@ -87,126 +88,158 @@ export class Draft {
   }
 
   undo(): void {
-    const last = this.undone[this.undone.length - 1];
-    if (last === undefined || this.locked) return;
-    this.undone = this.undone.slice(0, -1);
-    this.form = JSON.parse(last) as Form;
-    this.base = '';
+    this.step((now) => this.history.undo(now));
+  }
+
+  redo(): void {
+    this.step((now) => this.history.redo(now));
+  }
+
+  private step(to: (now: string) => string | undefined): void {
+    if (this.locked) return;
+    this.endStep();
+    const state = to(JSON.stringify(this.form));
+    if (state === undefined) return;
+    this.form = JSON.parse(state) as Form;
     this.changed();
   }
 
+  /** What was changed until now is one step for Undo. */
+  private endStep(): void {
+    if (this.base !== '' && this.base !== JSON.stringify(this.form)) this.history.add(this.base);
+    this.base = '';
+  }
+
   private changed(): void {
-    this.status = this.status === 'saving' ? 'saving' : 'changed';
+    if (this.status !== 'saving') this.status = 'changed';
     this.told = '';
     this.keepForm();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.save(), PAUSE);
   }
 
-  /** Saves what is not saved yet. */
+  /** Saves what the form has changed; done when nothing of it is under way. A text that is edited waits. */
   async save(): Promise<void> {
+    if (this.typed === null) await this.once(() => this.saveForm());
+  }
+
+  /** Saves what is edited now: the text, else the form. */
+  async saveNow(): Promise<void> {
+    await (this.typed === null ? this.save() : this.once(() => this.saveText()));
+  }
+
+  private once(act: () => Promise<void>): Promise<void> {
     clearTimeout(this.timer);
-    if (this.form === null || this.conflict || this.status === 'saving' || this.status === 'saved') return;
+    this.running ??= act().finally(() => (this.running = null));
+    return this.running;
+  }
+
+  private async saveForm(): Promise<void> {
+    while (this.form !== null && !this.locked && this.status !== 'saved') {
+      this.endStep();
+      this.status = 'saving';
+      const before = JSON.stringify(this.form);
+      const { form, rows } = sentForm(this.form);
+      const saved = await this.put({ form });
+      if (saved === null) return;
+      const more = JSON.stringify(this.form) !== before;
+      this.hear(saved, rows);
+      this.status = more ? 'changed' : 'saved';
+      if (more) this.keepForm();
+      else forget(this.place);
+    }
+  }
+
+  private async saveText(): Promise<void> {
+    const typed = this.typed;
+    if (typed === null || this.conflict) return;
+    const before = this.form && JSON.stringify(this.form);
     this.status = 'saving';
-    const before = JSON.stringify(this.form);
-    const { form, rows } = sentForm(this.form);
-    const saved = await this.put({ form });
+    const saved = await this.put(this.bodyOf(typed));
     if (saved === null) return;
-    this.hear(saved, rows);
-    if (this.base !== '' && this.base !== before) this.undone = [...this.undone.slice(1 - MOST_UNDOS), this.base];
-    const more = JSON.stringify(this.form) !== before;
-    this.base = more ? before : '';
-    this.status = more ? 'changed' : 'saved';
-    if (!more) return forget(this.place);
-    this.keepForm();
-    return this.save();
+    this.take(saved);
+    if (before !== null && before !== JSON.stringify(this.form)) this.history.add(before);
+    // What was typed meanwhile goes on from there.
+    if (this.typed !== typed) return this.keepTyped();
+    this.typed = null;
+    forget(this.place);
   }
 
   private keepForm(): void {
     keep(this.place, { revision: this.revision, form: copy(this.form!) });
   }
 
+  private keepTyped(): void {
+    keep(this.place, { revision: this.revision, typed: this.typed! });
+  }
+
   private async put(body: Body): Promise<Experiment | null> {
+    ++this.puts;
     try {
       const saved = await api.save(this.file, body, this.revision);
       this.trouble = '';
       return saved;
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
+      const there = error.status === 412 ? (error.body as { experiment: Experiment }).experiment : null;
+      if (there && same(body, there)) return there;
       this.status = 'unsaved';
-      if (error.status !== 412) {
-        this.trouble = error.words;
-        return null;
-      }
-      const there = (error.body as { experiment: Experiment }).experiment;
-      if (same(body, there)) return there;
-      this.conflict = there;
+      if (there) this.conflict = there;
+      else this.trouble = error.words;
       return null;
     }
   }
 
-  /** The text is edited itself; the form waits. */
-  type(text: string): void {
-    this.typed = text;
-    keep(this.place, { revision: this.revision, text });
+  /** A text is edited itself, of the experiment ('') or of one of its lists; the form waits. */
+  type(text: string, list = ''): void {
+    if (this.textLocked) return;
+    this.typed = { ...this.typed, [list]: text };
+    this.keepTyped();
     clearTimeout(this.timer);
     this.timer = setTimeout(() => void this.checkTyped(), PAUSE);
   }
 
   private async checkTyped(): Promise<void> {
-    const text = this.typed;
-    if (text === null) return;
-    const checked = await api.check(this.file, { text }).catch(() => null);
-    if (checked === null || this.typed !== text) return;
+    const typed = this.typed;
+    if (typed === null) return;
+    const checked = await api.check(this.file, this.bodyOf(typed)).catch(() => null);
+    if (checked === null || this.typed !== typed) return;
     this.faults = checked.faults;
     this.notes = checked.notes;
-  }
-
-  async saveTyped(): Promise<void> {
-    clearTimeout(this.timer);
-    if (this.typed === null || this.conflict) return;
-    const text = this.typed;
-    const before = this.form === null ? '' : JSON.stringify(this.form);
-    this.status = 'saving';
-    const saved = await this.put({ text });
-    if (saved === null || this.typed !== text) return;
-    this.typed = null;
-    this.take(saved);
-    if (before !== '') this.undone = [...this.undone.slice(1 - MOST_UNDOS), before];
-    forget(this.place);
   }
 
   async discardTyped(): Promise<void> {
     const there = await api.experiment(this.file);
     this.typed = null;
     forget(this.place);
+    if (there.revision !== this.revision) this.history.clear();
     this.take(there);
   }
 
   /** Looks whether the file is still the one that is shown. */
   async look(): Promise<void> {
-    if (this.conflict || this.status === 'saving') return;
+    while (this.running !== null) await this.running;
+    if (this.conflict) return;
+    const [look, puts] = [++this.looks, this.puts];
     const there = await api.experiment(this.file).catch(() => null);
-    // Saving that began or ended meanwhile knows better.
-    if (there === null || this.conflict || this.isSaving()) return;
+    // A later look knows better; what was read before or during a save says nothing any more.
+    if (there === null || this.conflict || look !== this.looks) return;
+    if (puts !== this.puts) return this.look();
+    const idle = this.status === 'saved' && this.typed === null;
     if (there.revision === this.revision) {
       // The lists' maps may have come or gone.
-      if (this.status === 'saved' && this.typed === null) this.hear(there, sentForm(this.form ?? there.form!).rows);
-      return;
-    }
-    if (this.status === 'saved' && this.typed === null) {
+      if (idle) this.hear(there, rowsOf(this.form));
+    } else if (idle) {
+      this.history.clear();
       this.take(there);
       this.told = 'The file was changed outside this page; it is shown as it is now.';
     } else this.conflict = there;
   }
 
-  private isSaving(): boolean {
-    return this.status === 'saving';
-  }
-
   /** In a conflict: what the file says now. */
   takeTheirs(): void {
     if (this.conflict === null) return;
+    this.history.clear();
     this.take(this.conflict);
     this.typed = null;
     this.conflict = null;
@@ -219,9 +252,8 @@ export class Draft {
     if (this.conflict === null) return;
     this.revision = this.conflict.revision;
     this.conflict = null;
-    if (this.typed !== null) return this.saveTyped();
     this.status = 'changed';
-    await this.save();
+    await this.saveNow();
   }
 
   /** What differs, in words, where two forms can be compared. */
@@ -232,28 +264,33 @@ export class Draft {
   }
 
   async checkMaps(): Promise<void> {
-    if (this.form === null) return;
-    const { form, rows } = sentForm(this.form);
-    const checked = await api.check(this.file, this.typed === null ? { form } : { text: this.typed }, true);
+    const body = this.body();
+    if (body === null) return;
+    const rows = rowsOf(this.form);
+    const checked = await api.check(this.file, body, true);
     this.faults = placed(checked.faults, rows);
     this.notes = checked.notes;
     this.mapsChecked = checked.maps_checked;
   }
 
   body(): Body | null {
-    if (this.typed !== null) return { text: this.typed };
-    return this.form === null ? null : { form: sentForm(this.form).form };
+    if (this.typed !== null) return this.bodyOf(this.typed);
+    return this.form && { form: sentForm(this.form).form };
+  }
+
+  private bodyOf({ '': text = this.text, ...lists }: Typed): Body {
+    return { text, lists };
   }
 
   private take(experiment: Experiment): void {
     this.form = experiment.form && copy(experiment.form);
     this.base = '';
     this.status = 'saved';
-    this.hear(experiment, this.form ? sentForm(this.form).rows : { hydrostatic: [], flow: [] });
+    this.hear(experiment, rowsOf(this.form));
   }
 
   /** What the program says of the file, the form left as it is. */
-  private hear(experiment: Experiment, rows: Record<ListName, number[]>): void {
+  private hear(experiment: Experiment, rows: Rows): void {
     this.revision = experiment.revision;
     this.text = experiment.text;
     this.lists = experiment.lists;
@@ -263,35 +300,18 @@ export class Draft {
     if (this.form && experiment.form) this.form.comments = experiment.form.comments;
   }
 
-  private resume(unsaved: Kept, experiment: Experiment): void {
-    const { form, text } = unsaved;
-    const body = text !== undefined ? { text } : form ? sentForm(form) : null;
-    if (body === null || same(body, experiment)) return forget(this.place);
-    if (text !== undefined) this.typed = text;
+  private resume({ revision, form, typed }: Kept, experiment: Experiment): void {
+    const body = typed ? this.bodyOf(typed) : form && { form: sentForm(form).form };
+    if (!body || same(body, experiment)) return forget(this.place);
+    if (typed) this.typed = typed;
     else this.form = form!;
-    if (unsaved.revision !== experiment.revision) {
+    if (revision !== experiment.revision) {
       this.status = 'unsaved';
       this.conflict = experiment;
-    } else if (this.typed !== null) void this.checkTyped();
+    } else if (typed) void this.checkTyped();
     else {
       this.status = 'changed';
       void this.save();
     }
   }
 }
-
-/** Whether a file says it already: the page may have gone while its last words were on their way. */
-function same(body: Body, { text, form }: Experiment): boolean {
-  if ('text' in body) return body.text === text;
-  return form !== null && differences(body.form, form).length === 0;
-}
-
-/** Faults of lists at the rows that the page shows. */
-function placed(faults: Fault[], rows: Record<ListName, number[]>): Fault[] {
-  return faults.map((fault) => {
-    const list = fault.key?.split('.')[0];
-    if (fault.row === null || (list !== 'hydrostatic' && list !== 'flow')) return fault;
-    return { ...fault, row: rows[list][fault.row] ?? fault.row };
-  });
-}
-

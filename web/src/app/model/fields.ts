@@ -25,7 +25,7 @@ export interface FieldKind {
 const field = (path: string, label: string, example: string, hint = ''): FieldKind => ({ path, label, example, hint });
 const choice = (path: string, label: string, choices: [string, string][], hint = ''): FieldKind => ({ path, label, choices, hint });
 
-export const NAME = field('name', 'Name of the experiment', 'S1');
+export const NAME = field('name', 'Experiment’s name', 'S1');
 
 export const SIZES = [
   field('channel.length', 'Length', '15.5 mm', 'along the flow'),

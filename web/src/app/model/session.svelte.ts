@@ -11,12 +11,15 @@ class Session {
   state = $state.raw<FolderState | null>(null);
   draft = $state.raw<Draft | null>(null);
   entries = $state.raw<Entry[]>([]); // of the folder of the experiment, or of the one that is browsed
+  cut = $state(false); // there are more
   browsed = $state(''); // folder that is looked at while no experiment is open
   job = $state<Job | null>(null);
   online = $state(true);
+  lost = $state(''); // why the server does not know this page, where it runs
   step = $state<Step>('maps');
   trouble = $state('');
   started = $state(false);
+  arrived = $state(0); // how often a view was gone to: it then has the cursor
 
   /** Folder of the experiment, else the one that is browsed; "" for the served one itself. */
   get folder(): string {
@@ -44,10 +47,22 @@ class Session {
   private reached(there: boolean): void {
     const again = there && !this.online;
     this.online = there;
+    if (!there) return void this.askWhy();
+    this.lost = '';
     if (!again) return;
     // What could not be saved or heard while the server was gone.
-    if (this.draft?.status === 'unsaved') void this.draft.save();
+    if (this.draft?.status === 'unsaved') void this.draft.saveNow();
     void this.meanwhile(() => this.heed([this.draft?.file ?? '']));
+  }
+
+  /** A WebSocket does not tell why it was refused: a server that was started again knows no page of before. */
+  private async askWhy(): Promise<void> {
+    try {
+      await api.state();
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      this.lost = error.status === 401 ? error.words : '';
+    }
   }
 
   /** Does something that nobody asked for: a server that does not answer is told by itself. */
@@ -80,11 +95,22 @@ class Session {
 
   private async readFolder(): Promise<void> {
     try {
-      this.entries = (await api.files(this.folder)).entries;
+      const { entries, truncated } = await api.files(this.folder);
+      [this.entries, this.cut] = [entries, truncated];
     } catch (error) {
       // A new folder comes to be with the first map that is brought there.
       if (!(error instanceof Refused) || error.status !== 404) throw error;
-      this.entries = [];
+      [this.entries, this.cut] = [[], false];
+    }
+  }
+
+  /** Part of an address as it was before it was encoded; a spelling that means nothing names nothing. */
+  private decoded(part: string): string {
+    try {
+      return decodeURIComponent(part);
+    } catch {
+      this.trouble = 'The address names no file. Pick the experiment.';
+      return '/';
     }
   }
 
@@ -93,11 +119,12 @@ class Session {
     const [, step, file] = /^#\/([a-z]+)(?:\/(.*))?$/.exec(location.hash) ?? [];
     const known = STEPS.find(({ name }) => name === step)?.name ?? 'maps';
     const list = this.state?.experiments ?? [];
-    const named = file === undefined ? (list.length === 1 ? list[0].file : '/') : decodeURIComponent(file);
+    const named = file === undefined ? (list.length === 1 ? list[0].file : '/') : this.decoded(file);
     const wanted = named.endsWith('/') ? null : named;
     if (wanted === null) this.browsed = named.slice(0, -1);
-    if (wanted === null || wanted !== this.draft?.file) await this.attempt(() => this.read(wanted));
-    this.go(known);
+    if (wanted === null || wanted !== this.draft?.file) await this.meanwhile(() => this.read(wanted));
+    if (this.started && known !== this.step) ++this.arrived;
+    this.show(known, 'replaceState');
   }
 
   private async read(file: string | null): Promise<void> {
@@ -106,17 +133,23 @@ class Session {
     await this.readFolder();
   }
 
+  /** Shows a view and puts the cursor there; the browser's Back leads here again. */
   go(step: Step): void {
+    this.show(step, 'pushState');
+    ++this.arrived;
+  }
+
+  private show(step: Step, how: 'pushState' | 'replaceState'): void {
     this.step = step;
     const address = `#/${step}/${pathAddress(this.draft?.file ?? `${this.browsed}/`)}`;
-    if (location.hash !== address) history.replaceState(null, '', address);
+    if (location.hash !== address) history[how](null, '', address);
   }
 
   /** Opens an experiment, or none: then a folder of maps. */
   async open(file: string | null, folder = ''): Promise<void> {
     this.browsed = folder;
     await this.attempt(() => this.read(file));
-    this.go('maps');
+    this.show('maps', 'pushState');
   }
 
   private hear(event: Event): void {

@@ -5,7 +5,7 @@ import type { Form } from '../api/types';
 export interface Kept {
   revision: string | null; // of the file that it began from
   form?: Form;
-  text?: string;
+  typed?: Record<string, string>; // texts, by the names of lists; '' is the experiment's
 }
 
 const name = (place: string) => `manoscope unsaved ${place}`;
