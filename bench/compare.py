@@ -337,8 +337,11 @@ def print_serve(table):
     print(f"{'':<20}{'':<24}{'p50 ms':>9}{'p99 ms':>9}{'most ms':>9}")
     for answer in table["answers"]:
         beside = "while maps are drawn" if answer["while_maps_are_drawn"] else ""
-        print(f"{answer['question']:<20}{beside:<24}{answer['p50_ms']:9.2f}{answer['p99_ms']:9.2f}"
-              f"{answer['most_ms']:9.2f}  p99 {judged(answer['p99_ms'], GOAL_ANSWER_MS, True)}")
+        times = "".join(f"{answer[key]:9.2f}" for key in ("p50_ms", "p99_ms", "most_ms"))
+        # Writing waits for the disk, whatever that is.
+        goal = ("" if answer["question"].startswith("writing") else
+                f"  p99 {judged(answer['p99_ms'], GOAL_ANSWER_MS, True)}")
+        print(f"{answer['question']:<20}{beside:<24}{times}{goal}")
 
 
 def print_program(title, table):

@@ -2,7 +2,8 @@
 // EXPERIMENT
 //
 // 8 connections at once, each asking one question after another; once alone, once while another
-// connection has one map after another drawn. One line of JSON.
+// connection has one map after another drawn. Writing, which waits for the disk, one after another.
+// One line of JSON.
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -75,9 +76,9 @@ struct Service {
   std::string host, cookie;
 
   std::string request(const std::string& method, const std::string& target,
-                      const std::string& body = "") const {
+                      const std::string& body = "", const std::string& fields = "") const {
     std::string text = method + " " + target + " HTTP/1.1\r\nHost: " + host +
-                       "\r\nCookie: " + cookie + "\r\nOrigin: http://" + host + "\r\n";
+                       "\r\nCookie: " + cookie + "\r\nOrigin: http://" + host + "\r\n" + fields;
     if (!body.empty()) {
       text += "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) +
               "\r\n";
@@ -130,6 +131,28 @@ json told(const std::vector<double>& times) {
   return {{"p50_ms", at(0.5)}, {"p99_ms", at(0.99)}, {"most_ms", times.back()}};
 }
 
+/// Milliseconds of one writing after another, each of them a change that reaches the disk; the
+/// last one puts the text back.
+std::vector<double> time_writing(const Service& service, const std::string& target, json read) {
+  constexpr int kWritings = 100;  // an even number
+  Connection connection(service.port);
+  const std::string text = read.at("text");
+  std::vector<double> times;
+  for (int i = 0; i < kWritings; ++i) {
+    const json body = {{"text", i % 2 == 0 ? text + "# changed\n" : text}};
+    const std::string match = "If-Match: \"" + read.at("revision").get<std::string>() + "\"\r\n";
+    const auto start = std::chrono::steady_clock::now();
+    const auto [head, answer] = connection.ask(service.request("PUT", target, body.dump(), match));
+    const std::chrono::duration<double, std::milli> taken =
+        std::chrono::steady_clock::now() - start;
+    if (head.find(" 200 ") == std::string::npos) std::_Exit(1);
+    read = json::parse(answer);
+    times.push_back(taken.count());
+  }
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -150,12 +173,14 @@ int main(int argc, char** argv) {
   const json read = json::parse(first.ask(service.request("GET", experiment)).second);
   const json check = {{"file", argv[3]}, {"form", read.at("form")}};
   const std::string folder = read.at("file").get<std::string>();
+  const std::string listing = "/api/files?folder=" + folder.substr(0, folder.rfind('/'));
   const std::string map =
       folder.substr(0, folder.rfind('/') + 1) +
       read.at("form").at("hydrostatic").at("rows").at(1).at(0).get<std::string>();
   const std::pair<const char*, std::string> questions[] = {
       {"current job", service.request("GET", "/api/jobs/current")},
       {"state", service.request("GET", "/api/state")},
+      {"files of a folder", service.request("GET", listing)},
       {"experiment", service.request("GET", experiment)},
       {"check of a draft", service.request("POST", "/api/check", check.dump())}};
   json answers = json::array();
@@ -168,12 +193,14 @@ int main(int argc, char** argv) {
         while (!stop) connection.ask(service.request("GET", "/api/map?file=" + map));
       });
     }
-    for (const auto& [name, request] : questions) {
-      json answer = told(time_answers(service, request));
+    const auto add = [&](const char* name, const std::vector<double>& times) {
+      json answer = told(times);
       answer["question"] = name;
       answer["while_maps_are_drawn"] = drawing;
       answers.push_back(answer);
-    }
+    };
+    for (const auto& [name, request] : questions) add(name, time_answers(service, request));
+    add("writing of a draft", time_writing(service, experiment, read));
     stop = true;
     if (painter.joinable()) painter.join();
   }
