@@ -72,17 +72,18 @@ void check_runs(const MapList<FlowMap>& flow, io::Faults& faults) {
 void check_lists(const MapList<HydrostaticMap>& hydrostatic, const MapList<FlowMap>& flow,
                  io::Faults& faults) {
   const Seen at_rest = check_repeats(hydrostatic, "pressure", faults);
-  check_repeats(flow, "flow rate", faults);
-  for (std::size_t i = 0; i < flow.maps.size(); ++i) {
-    const FlowMap& map = flow.maps[i];
-    if (map.name.empty()) continue;
-    const auto found = at_rest.find(MapFiles::identity(map.map));
-    if (found == at_rest.end()) continue;
-    const io::Place other = hydrostatic.rows[found->second];
-    faults.add(flow.place(i, "map"),
-               fmt::format("{} is also in the hydrostatic list, {}:{}", io::in_quotes(map.name),
-                           other.file.filename().string(), other.line),
-               "A map is taken at rest or under flow: remove it from one list");
+  std::map<std::size_t, std::size_t> at_rest_too;  // rows of both lists, in the order of the flow's
+  for (const auto& [identity, row] : check_repeats(flow, "flow rate", faults)) {
+    const auto found = at_rest.find(identity);
+    if (found != at_rest.end()) at_rest_too.emplace(row, found->second);
+  }
+  for (const auto& [row, row_at_rest] : at_rest_too) {
+    const io::Place other = hydrostatic.rows[row_at_rest];
+    faults.add(
+        flow.place(row, "map"),
+        fmt::format("{} is also in the hydrostatic list, {}:{}", io::in_quotes(flow.maps[row].name),
+                    other.file.filename().string(), other.line),
+        "A map is taken at rest or under flow: remove it from one list");
   }
   check_levels(hydrostatic, faults);
   check_runs(flow, faults);

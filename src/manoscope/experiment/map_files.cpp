@@ -1,6 +1,7 @@
 #include "manoscope/experiment/map_files.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -28,7 +29,7 @@ std::string obstacle(const fs::path& path) {
   if (error) return "the path cannot be followed (" + error.message() + ")";
   if (fs::is_directory(status)) return "it is a folder, not a file";
   if (!fs::is_regular_file(status)) return "it is no ordinary file";
-  if (!std::ifstream(path, std::ios::binary)) return "the file cannot be opened";
+  if (::access(path.c_str(), R_OK) != 0) return "the file cannot be opened";
   if (fs::file_size(path, error) == 0) return "the file is empty";
   return "";
 }
@@ -42,9 +43,9 @@ fs::path MapFiles::find(const std::string& name, const io::Place& place, io::Fau
   }
   fs::path named = folder_ / fs::path(name);
   if (text_instead(named) != nullptr) return named;
-  if (const fs::path beside = place.file.parent_path() / fs::path(name);
-      !is_there(io::map_address(named).file) && is_there(io::map_address(beside).file)) {
-    named = beside;
+  if (!is_there(io::map_address(named).file)) {
+    const fs::path beside = place.file.parent_path() / fs::path(name);
+    if (is_there(io::map_address(beside).file)) named = beside;
   }
   const fs::path path = io::map_address(named).file;  // of FILE#n, the file
   const std::string trouble = obstacle(path);
