@@ -18,7 +18,6 @@ Reply page(unsigned status, const std::string& policy, const std::string& head,
   reply.body = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n"  // none, or a browser asks for /favicon.ico
       "<title>manoscope</title>\n{}</head>\n<body>\n{}</body>\n</html>\n",
       head, body);
   reply.headers.emplace_back("Content-Security-Policy", policy);
@@ -35,6 +34,7 @@ Reply app_page(std::uint16_t port) {
                           "frame-src 'self'; base-uri 'none'; form-action 'none'; "
                           "frame-ancestors 'none'",
                           port),
+              "<link rel=\"icon\" href=\"data:,\">\n"  // none, or a browser asks for /favicon.ico
               "<link rel=\"stylesheet\" href=\"/app.css\">\n"
               "<script src=\"/app.js\" defer></script>\n",
               "<div id=\"app\"></div>\n"
