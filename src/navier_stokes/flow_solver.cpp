@@ -74,10 +74,8 @@ class Newton {
     set_grad_div(std::max(least, discrete.problem.grad_div));
   }
 
-  /// Turns the grad-div term on, if it is not.
-  void need_grad_div() {
-    if (!discrete_.costs.grad_div) set_grad_div(kGradDiv);
-  }
+  /// Raises the weight of the grad-div term to kGradDiv, if it is below.
+  void need_grad_div() { set_grad_div(std::max(assembler_.grad_div(), kGradDiv)); }
 
   /// @return whether the problem's own start leads to its flow.
   bool starts_near() {
@@ -112,7 +110,7 @@ class Newton {
   double resume(double least_step) {
     const auto progress = read_checkpoint<dim>(checkpoint_, discrete_);
     if (!progress) return 0.0;
-    if (progress->grad_div) need_grad_div();
+    if (progress->grad_div && !discrete_.costs.grad_div) need_grad_div();
     reached_ = progress->reached;
     return raise(least_step);
   }

@@ -69,8 +69,8 @@ struct FlowProblem {
   std::function<Vector<dim>(const Vector<dim>& chart)> start;
   SolverKind solver = SolverKind::direct;
   /// Weight of -Re grad(div u) in the equations, 0 for the exact flow: on coarse meshes Newton's
-  /// method lives on it. Where it is 0 and no flow is found, or systems are solved by iteration,
-  /// the solver takes one of its own.
+  /// method lives on it. Where no flow is found, or systems are solved by iteration, the solver
+  /// takes more.
   double grad_div = 0.0;
 };
 
@@ -136,14 +136,15 @@ struct FlowSide {
 ///
 /// Weak form: for all v, q that vanish where values are given,
 ///   Re ((u . grad) u, v) + (grad u, grad v) - (p, div v) - (q, div u) = (f, v),
-/// whose natural condition is SideCondition::open. Without an open side p is 0 at one node.
-/// Newton's iteration with the exact derivative, from `start`, then from Stokes flow; where neither
-/// leads to `reynolds`, as on coarse meshes, once more with 0.01 Re (div u, div v) on the left,
-/// which is 0 for the exact flow, by steps in the Reynolds number that halve where it fails.
-/// SolverKind::iterative has 0.1 Re of that term from the beginning: its preconditioner lives on
-/// it. Every solution of a linear system is checked (LinearSolver); without one that counts the
-/// iteration has failed. Source: e.g. H. Elman, D.
-/// Silvester & A. Wathen, Finite Elements and Fast Iterative Solvers (2014), ch. 8.
+/// whose natural condition is SideCondition::open. Without an open side p is 0 at one node. There
+/// is, and on the left, where `grad_div` is given, grad_div Re (div u, div v), 0 for the exact
+/// flow. Newton's iteration with the exact derivative, from `start`, or from Stokes flow where
+/// there is none; where that does not lead to `reynolds`, as on coarse meshes, with a weight of
+/// kGradDiv at least from Stokes flow, by steps in the Reynolds number that halve where it fails.
+/// SolverKind::iterative has a weight of 0.1 from the beginning: its preconditioner lives on it.
+/// Every solution of a linear system is checked (LinearSolver); without one that counts the
+/// iteration has failed. Source: e.g. H. Elman, D. Silvester & A. Wathen, Finite Elements and Fast
+/// Iterative Solvers (2014), ch. 8.
 ///
 /// Errors in the 2-norm fall with h^(k+1) in u and h^k in p where the solution is smooth (test for
 /// k = 2, 3). Pressure is unbounded in corners where given velocities clash or where the inlet

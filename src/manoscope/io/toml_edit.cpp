@@ -212,8 +212,9 @@ std::string without_toml_key(const std::string& text, const std::string& section
     refuse(section, key);
   }
   std::vector<std::string> kept = comments_in(std::string_view(text).substr(begin, end - begin));
-  if (comment < behind.size())
+  if (comment < behind.size()) {
     kept.back() = mark_of(key) + text.substr(value, comment) + kept.back();
+  }
   const std::string indent = text.substr(begin, name - begin);
   return checked(text.substr(0, begin) + lines_of(kept, indent, text) + text.substr(end),
                  with_section(document.root(), section, std::move(changed)), section, key);
